@@ -4,7 +4,7 @@
 #define TINY                                                                                                 \
     "--size 6x5 --shadow-map 8 --particles 4 --spp 2 --light-map 4 --rsm-size 8 --clusters 2 "               \
     "--first-bounce 6 --second-bounce 6 --paraboloid 4 --patches 16 --iterations 2 --form-samples 1 "        \
-    "--patch-light 1 --batch 3 --area-light-samples 3 --interleave 2 "
+    "--patch-light 1 --batch 3 --area-light-samples 3 --sky-samples 7 --interleave 2 "
 #define AREA   "examples/scenes/room-area.json"
 #define POINT  "tests/data/room.json"
 #define CORNER "tests/data/corner-path.json"

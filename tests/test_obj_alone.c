@@ -325,7 +325,8 @@ TEST_ALONE(ABadObjSceneDefIsRefused)
         assert_int_equal(vplScene_LoadFor(d.context, d.obj, &def, &scene), VPL_INVALID_ARGUMENT);
     }
     assert_int_equal(countOf(d.said, "vplObjSceneDef.aspect is "), 6);
-    def = (vplObjSceneDef){1, true, true, 0};
+    def.aspect = 1;
+    def.cookie = 0;
     assert_int_equal(vplScene_LoadFor(d.context, d.obj, &def, &scene), VPL_INVALID_ARGUMENT);
     assert_int_equal(countOf(d.said, "vplObjSceneDef was not made by its default function"), 1);
     assert_null(scene);

@@ -57,6 +57,46 @@ bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hi
 // particle would hit the face it starts on.
 bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFace, vplHit* hitOut);
 
+// ---- the environment
+
+// Light from infinitely far away as a picture of all directions, laid out as vplEnvironmentDef.pixels, and its
+// distribution. Read only. The camera sees radiance that is interpolated linearly between the centres of pixels. Surfaces
+// receive its mean over each pixel, so that light and density of a direction are in the same ratio everywhere.
+typedef struct vplEnvironment {
+    int width, height;
+    const float* pixels;    // radiance, W/(m^2 sr)
+    const double* rows;     // power of all rows above, W/m^2; height + 1
+    const double* columns;  // of each row, the share of the pixels left of each; height * (width + 1)
+    const double* cosines;  // of the angle from +y at the upper edge of each row; height + 1
+    double sine, cosine;    // of the turn about +y
+    vplRgb irradiance;      // of all directions together: the integral of radiance, W/m^2
+    struct vplArena* arena; // owns the arrays
+} vplEnvironment;
+
+// NULL in *environmentOut where the scene has none, or one of radiance 0. VPL_OUT_OF_MEMORY.
+vplResult vplEnvironment_Create(const vplScene* scene, vplEnvironment** environmentOut);
+
+// NULL is allowed.
+void vplEnvironment_Destroy(vplEnvironment* environment);
+
+// Radiance that the camera sees in the direction of a unit vector; black for NULL.
+vplRgb vplEnvironment_Radiance(const vplEnvironment* environment, vplVec3 direction);
+
+// Radiance that surfaces receive from a direction (unit). Stores the probability density of the direction, per steradian:
+// its share of the light, the mean of red, green and blue.
+vplRgb vplEnvironment_Light(const vplEnvironment* environment, vplVec3 direction, double* densityOut);
+
+// Samples a direction (unit, towards the light) of this density by two numbers in [0, 1), with its light and density.
+// Source: Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.5.2; rows are sampled evenly in solid
+// angle.
+typedef struct vplEnvironmentSample {
+    vplVec3 direction;
+    vplRgb light;   // W/(m^2 sr)
+    double density; // > 0
+} vplEnvironmentSample;
+
+vplEnvironmentSample vplEnvironment_Sample(const vplEnvironment* environment, double u, double v);
+
 // ---- the geometry
 
 typedef struct vplGeometryObject {
@@ -96,6 +136,7 @@ typedef struct vplGeometry {
     double meanReflectance;       // area-weighted, mean of the channels; 0 where there is no area
     bool emits;                   // some triangle may emit
     const struct vplPaint* paint; // textures and colours of vertices; NULL: surfaces have one colour each
+    vplEnvironment* environment;  // light from outside; NULL: there is none
     struct vplBvh* rayTree;       // accelerates rays; NULL: there is none
     struct vplArena* arena;       // owns the arrays
     vplContext* context;
@@ -153,10 +194,10 @@ float vplGeometry_Diagonal(const vplGeometry* geometry);
 
 // ---- emission
 
-// An emitter of the scene, or a triangle whose material emits (from its front only).
+// An emitter of the scene, the environment, or a triangle whose material emits (from its front only).
 typedef struct vplEmissionSource {
-    int emitter;  // index of the emitter; -1: a triangle
-    int triangle; // index of the triangle; -1: an emitter
+    int emitter;  // index of the emitter; -1: a triangle or the environment
+    int triangle; // index of the triangle; -1: an emitter or the environment
     vplRgb power; // W
 } vplEmissionSource;
 
@@ -164,19 +205,21 @@ typedef struct vplEmissionSource {
 // chosen with a probability proportional to power, the mean of its three channels.
 typedef struct vplEmission {
     const vplGeometry* geometry;
-    const vplEmitterDef* emitters;    // a copy; directions are unit vectors
-    const vplEmissionSource* sources; // emitters in the scene's order, then triangles in theirs
+    const vplEmitterDef* emitters; // a copy; directions are unit vectors
+    const vplEmissionSource*
+        sources;              // emitters in the scene's order, the environment, then triangles in theirs
     const double* cumulative; // W: power of all sources before this one; one more than there are sources
     int emitterCount, sourceCount;
-    int firstTriangle;      // index of the first source that is a triangle
-    vplVec3 centre;         // of the sphere around the geometry, which directional emitters cover
-    double radius;          // metres; 0 where there is no geometry
+    int firstTriangle; // index of the first source that is a triangle
+    int environment;   // index of the source that is the environment; -1: there is none
+    vplVec3 centre; // of the sphere around the geometry, which directional emitters and the environment cover
+    double radius;  // metres; 0 where there is no geometry
     struct vplArena* arena; // owns the arrays
     vplContext* context;
 } vplEmission;
 
 // Powers: point 4 pi I; spot I times the solid angle weighted by the falloff; directional E pi radius^2;
-// triangle pi L area. `emitters` may be NULL if emitterCount is 0. The geometry must outlive the emission.
+// environment the same with its irradiance; triangle pi L area. `emitters` may be NULL if emitterCount is 0. The geometry must outlive the emission.
 vplResult vplEmission_Create(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                              vplEmission** emissionOut);
 
@@ -204,7 +247,8 @@ vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, flo
 
 // A particle that leaves a source. Its flux is that of all sources: divide by the number of particles.
 typedef struct vplParticle {
-    vplRay ray; // unit direction; from a triangle as vplGeometry_Leave, directional from outside the geometry
+    vplRay
+        ray; // unit direction; from a triangle as vplGeometry_Leave, directional and environment from outside
     vplVec3 position; // in m: of the emitter, or on its surface
     vplVec3 normal;   // unit: of the triangle, else the direction
     vplRgb flux;      // W; its mean over the channels is vplEmission_Power, whatever the source
@@ -212,8 +256,8 @@ typedef struct vplParticle {
 } vplParticle;
 
 // Samples a particle from five numbers in [0, 1): `choice` chooses the source, u[0], u[1] the position
-// (triangle, directional), u[2], u[3] the direction (cosine-distributed from a triangle, uniform from a
-// point, by the falloff from a spot). False where nothing emits.
+// (triangle, directional, environment), u[2], u[3] the direction (cosine-distributed from a triangle, uniform from a
+// point, by the falloff from a spot, as vplEnvironment_Sample). False where nothing emits.
 bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],
                                 vplParticle* particleOut);
 

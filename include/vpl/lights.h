@@ -112,6 +112,9 @@ void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface*
 
 // ---- particles
 
+// The object of lights that are not on a surface but in the sky.
+enum { VPL_SKY_OBJECT = 0x7fffffff };
+
 typedef struct vplVirtualLight {
     vplVec3 position; // metres
     // Unit normal of the surface, on the side that the particle came from (documented: as declared). For a
@@ -125,7 +128,9 @@ typedef struct vplVirtualLight {
     float weight;
     int step;     // k: 0 for the first hit
     int particle; // [0, N)
-    int object;   // the object it lies on; -1: it is a point or directional emitter (Keller, step 0)
+    // The object it lies on; VPL_SKY_OBJECT: it is light of the environment from one direction, far outside the scene;
+    // -1: it is a point or directional emitter (Keller, step 0).
+    int object;
 } vplVirtualLight;
 
 typedef struct vplParticleDef {
@@ -432,6 +437,11 @@ typedef struct vplShadeLight {
 // count, or 0 where no triangle emits.
 // Source: Keller, Instant Radiosity, 1997, section 3.
 int vplSampleAreaLights(const vplEmission* emission, int count, vplShadeLight* out);
+
+// Samples of the environment, for direct light: `count` directions by its distribution, as lights on a sphere of 4096
+// radii of the scene, from where their light is parallel but for 1/4096. Returns how many were written: count, or 0 where
+// the scene has no environment.
+int vplSampleSky(const vplEmission* emission, int count, vplShadeLight* out);
 
 VPL_HEADER_END
 

@@ -69,6 +69,7 @@ typedef struct vplPlan {
     bool castsRays;       // some stage casts rays, so the geometry has a ray tree
     bool emitterRays;     // emitters are shadowed by rays, not by maps
     bool hasAreaLights;   // a material emits light
+    bool hasSky;          // the scene has an environment
     bool showsDirect;     // the picture shows emission, and light from emitters and area lights
     bool showsVirtual;    // the picture shows light from virtual lights
     bool showsPatches;    // the picture shows patches

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The declared scene: cameras, textures, materials, meshes, objects and emitters. Each addition checks all its numbers.
+// The declared scene: cameras, textures, materials, meshes, objects, emitters and environment. Each addition checks all its
+// numbers.
 #ifndef VPL_SCENE_H
 #define VPL_SCENE_H
 
@@ -121,6 +122,31 @@ typedef struct vplEmitterDef {
 
 vplEmitterDef vplDefaultEmitterDef(void);
 
+typedef enum vplEnvironmentType {
+    VPL_ENVIRONMENT_NONE = 0, // nothing but darkness
+    VPL_ENVIRONMENT_CONSTANT, // the same radiance from all directions
+    VPL_ENVIRONMENT_PICTURE,  // radiance from a picture of all directions
+    VPL_ENVIRONMENT_SKY       // a clear sky, and its sun
+} vplEnvironmentType;
+
+// Light from infinitely far away; y is up.
+typedef struct vplEnvironmentDef {
+    vplEnvironmentType type; // default VPL_ENVIRONMENT_NONE
+    vplRgb radiance;         // W/(m^2 sr), >= 0; constant; default 1
+    // Picture: radiance in W/(m^2 sr), >= 0, 3 * width * height floats, copied. Rows are of equal height in the angle
+    // from straight up (row 0) to straight down, columns of equal width in the angle about y; the middle of the picture
+    // is the direction -z, and +x is to its right. Default NULL.
+    const float* pixels;
+    int width, height; // of the picture, [1, VPL_MAX_IMAGE_SIZE]; default 0
+    double scale;      // factor of the radiance, and of the sun, [0, VPL_MAX_MAGNITUDE]; default 1
+    double rotate;     // about +y, counter-clockwise seen from above, radians, [-1e6, 1e6]; default 0
+    double elevation;  // of the sun above the horizon, radians, [0, pi / 2]; sky; default 45 degrees
+    double turbidity;  // haze: 2 very clear, 3 clear, 6 warm and moist, 10 hazy, [2, 10]; sky; default 3
+    uint32_t cookie;   // set by vplDefaultEnvironmentDef
+} vplEnvironmentDef;
+
+vplEnvironmentDef vplDefaultEnvironmentDef(void);
+
 // A keyframe of a camera; the fields are those of vplCameraDef.
 typedef struct vplCameraKey {
     double frame; // [-VPL_MAX_FRAME, VPL_MAX_FRAME]
@@ -156,6 +182,7 @@ typedef struct vplObjSceneDef {
     double aspect;   // of the picture that the vertices fill: width / height, [1e-6, 1e6]; default 16 / 9
     bool ground;     // true (default): a grey ground under the lowest vertex, y being up
     bool areaLight;  // light, if nothing emits; true (default): two square lamps; false: a point light
+    bool unlit;      // true: no light is added; default false
     uint32_t cookie; // set by vplDefaultObjSceneDef
 } vplObjSceneDef;
 
@@ -196,6 +223,17 @@ vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut);
 vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* indexOut);
 
+// Sets the environment, in place of the one that was set before. The sun of a sky becomes a directional emitter, the
+// last of the scene so far: it stands in the direction of +x, turned by `rotate`. Setting another environment
+// takes that emitter's light away, and the emitter too where it is still the last. VPL_INVALID_ARGUMENT,
+// VPL_OUT_OF_MEMORY.
+// Source: Preetham, Shirley and Smits, A Practical Analytic Model for Daylight, SIGGRAPH 1999.
+vplResult vplScene_SetEnvironment(vplScene* scene, const vplEnvironmentDef* def);
+
+// The same with a picture from a file that vplImage_Read reads; `def` gives scale and rotation. Negative and not finite
+// values of the file count as 0, with a warning. Errors also as vplImage_Read.
+vplResult vplScene_LoadEnvironment(vplScene* scene, const char* path, const vplEnvironmentDef* def);
+
 // Makes a camera or an emitter move along keyframes: linear interpolation between two keys, constant before
 // the first and after the last. Frames must increase, and the values at each key must be valid for a def.
 // Replaces the path that was set before; with 0 keys it stands still, as declared. VPL_INVALID_ARGUMENT,
@@ -224,6 +262,13 @@ const vplMeshDef* vplScene_GetMesh(const vplScene* scene, int index);
 const vplObjectDef* vplScene_GetObject(const vplScene* scene, int index);
 const vplEmitterDef* vplScene_GetEmitter(const vplScene* scene, int index);
 
+// The environment as it was set, with a copy of the picture that the scene owns; of a sky, the picture is the one that
+// was made of it, without the sun.
+const vplEnvironmentDef* vplScene_GetEnvironment(const vplScene* scene);
+
+// The emitter that is the sun of the scene's sky; -1: there is none.
+int vplScene_GetSun(const vplScene* scene);
+
 // The keys of a path, which the scene owns; NULL and 0 if there is none. The index must be in range.
 const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut);
 const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut);
@@ -234,7 +279,7 @@ vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vp
 vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut);
 
 // Hash of all that pictures depend on: cameras, textures, materials, meshes, objects, emitters and their paths, in
-// their order, without names. The same in every process and on every machine; it takes a pass over the
+// their order, without names, and the environment. The same in every process and on every machine; it takes a pass over the
 // scene's data.
 uint64_t vplScene_GetHash(const vplScene* scene);
 

@@ -81,7 +81,9 @@ typedef enum vplShadeOutput {
     // Irradiance of virtual lights only, W/m^2; interleaved: of the lights of the pixel's class, K^2 times as
     // bright.
     VPL_OUTPUT_GATHER,
-    VPL_OUTPUT_DENOISED // the same after the filter of interleaved shading
+    VPL_OUTPUT_DENOISED, // the same after the filter of interleaved shading
+    // Radiance of the environment, times the share of a pixel's samples that show nothing, W/(m^2 sr).
+    VPL_OUTPUT_BACKGROUND
 } vplShadeOutput;
 
 // Compensation: brings back the light that the clamp takes, by rays of length minDistance from each point. A

@@ -185,6 +185,10 @@ bool parseArguments(int count, const char* const* words, Arguments* arguments)
     if (a.positionalCount > 0 && strcmp(a.positionals[0], "-") == 0) {
         a.positionals[0] = "/dev/stdin";
     }
+    if (a.environment != NULL && a.sky != NULL) {
+        complain("--environment and --sky are both given, must be one of them");
+        return false;
+    }
     warnOfUnused(&a);
     if (a.noGround && !a.quiet && a.positionalCount > 0 && !vplIsObjPath(a.positionals[0])) {
         complain("warning: --no-ground has no effect with %s, only with a mesh (.obj)", a.positionals[0]);

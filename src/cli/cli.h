@@ -69,6 +69,7 @@ struct Arguments {
     uint64_t planScene;              // hash of the scene that the plan was made for
     const char *checkpoint, *resume; // --checkpoint, --resume
     double checkpointEvery;          // seconds
+    const char *environment, *sky;   // --environment, --sky
     const char* heatmap;             // --heatmap
     int heatmapOf;                   // a vplHeat
     double heatScale;                // 0: automatic
@@ -118,6 +119,15 @@ vplResult planRender(const Arguments* arguments, const vplScene* scene, vplPlan*
 
 // Loads the scene that the arguments name; a mesh by itself is fitted to the picture.
 vplResult loadScene(const Arguments* arguments, vplContext* context, vplScene** sceneOut);
+
+// Reads "ELEVATION", "ELEVATION,TURBIDITY" or "ELEVATION,TURBIDITY,TURN", degrees; false if it is anything else.
+bool parseSky(const char* value, vplEnvironmentDef* defOut);
+
+// Gives the scene the environment that the arguments name, if they name one.
+vplResult addEnvironment(const Arguments* arguments, vplScene* scene);
+
+// "none", "constant", "picture" or "sky".
+const char* describeEnvironment(const vplScene* scene);
 
 // Returns the exit code for a result. A file error is bad input (2) if `reading`, else a failure to write
 // (1).

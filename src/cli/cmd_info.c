@@ -50,6 +50,11 @@ static void countScene(Info* info)
     }
 }
 
+static int lampTriangles(const Info* info)
+{
+    return info->emission->sourceCount - info->emission->firstTriangle;
+}
+
 // ---- text
 
 static void printScene(const char* path, const Info* info)
@@ -75,8 +80,16 @@ static void printScene(const char* path, const Info* info)
     if (info->paths > 0) {
         printf("  %-16s %d, frames %g to %g\n", "paths", info->paths, info->firstFrame, info->lastFrame);
     }
-    if (info->emission->sourceCount > 0) {
-        printf("  %-16s %d triangles, %g m^2\n", "area lights", info->emission->sourceCount,
+    const vplEnvironmentDef* environment = vplScene_GetEnvironment(scene);
+    if (environment->type != VPL_ENVIRONMENT_NONE) {
+        const vplRgb e = g->environment != NULL ? g->environment->irradiance : (vplRgb){0, 0, 0};
+        printf("  %-16s %s, %dx%d, mean radiance (%.4g, %.4g, %.4g) W/(m^2 sr)\n", "environment",
+               describeEnvironment(scene), g->environment != NULL ? g->environment->width : 1,
+               g->environment != NULL ? g->environment->height : 1, (double)e.r / (4 * VPL_PI),
+               (double)e.g / (4 * VPL_PI), (double)e.b / (4 * VPL_PI));
+    }
+    if (lampTriangles(info) > 0) {
+        printf("  %-16s %d triangles, %g m^2\n", "area lights", lampTriangles(info),
                vplEmission_Area(info->emission));
     }
     printf("  %-16s %d\n", "triangles", g->triangleCount);
@@ -143,7 +156,7 @@ static json_t* sceneJson(const Info* info)
     const vplGeometry* g = info->geometry;
     const int *objects = info->objectsOfType, *emitters = info->emittersOfType;
     return json_pack("{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:{s:i, "
-                     "s:f, s:f}, s:i, s:i, s:f, s:o, s:o, s:f, s:f, s:f, s:o}",
+                     "s:f, s:f}, s:s, s:i, s:i, s:f, s:o, s:o, s:f, s:f, s:f, s:o}",
                      "cameras", vplScene_GetCameraCount(scene), "materials", vplScene_GetMaterialCount(scene),
                      "objects", "total", vplScene_GetObjectCount(scene), "quad", objects[VPL_OBJECT_QUAD],
                      "box", objects[VPL_OBJECT_BOX], "mesh", objects[VPL_OBJECT_MESH], "meshes", "total",
@@ -151,12 +164,12 @@ static json_t* sceneJson(const Info* info)
                      (json_int_t)info->meshTriangles, "lights", "total", vplScene_GetEmitterCount(scene),
                      "point", emitters[VPL_EMITTER_POINT], "spot", emitters[VPL_EMITTER_SPOT], "directional",
                      emitters[VPL_EMITTER_DIRECTIONAL], "paths", "total", info->paths, "first_frame",
-                     info->firstFrame, "last_frame", info->lastFrame, "triangles", g->triangleCount,
-                     "lamp_triangles", info->emission->sourceCount, "lamp_area",
-                     vplEmission_Area(info->emission), "bounds_min", position(g, g->boundsMin), "bounds_max",
-                     position(g, g->boundsMax), "diagonal", (double)vplGeometry_Diagonal(g), "area",
-                     vplGeometry_Area(g), "mean_reflectance", vplGeometry_MeanReflectance(g), "render",
-                     planJson(info->plan));
+                     info->firstFrame, "last_frame", info->lastFrame, "environment",
+                     describeEnvironment(scene), "triangles", g->triangleCount, "lamp_triangles",
+                     lampTriangles(info), "lamp_area", vplEmission_Area(info->emission), "bounds_min",
+                     position(g, g->boundsMin), "bounds_max", position(g, g->boundsMax), "diagonal",
+                     (double)vplGeometry_Diagonal(g), "area", vplGeometry_Area(g), "mean_reflectance",
+                     vplGeometry_MeanReflectance(g), "render", planJson(info->plan));
 }
 
 static vplResult examine(const Arguments* a, Info* info)

@@ -45,7 +45,11 @@ vplResult loadScene(const Arguments* a, vplContext* context, vplScene** sceneOut
     def.ground = !a->noGround;
     def.areaLight = a->render.lighting != VPL_LIGHTING_DOCUMENTED; // which has no area lights
     vplContext_SetProgress(context, askInterrupts, NULL);          // a pipe may be silent
-    const vplResult result = vplScene_LoadFor(context, a->positionals[0], &def, sceneOut);
+    def.unlit = a->environment != NULL || a->sky != NULL;
+    vplResult result = vplScene_LoadFor(context, a->positionals[0], &def, sceneOut);
+    if (result == VPL_SUCCESS) {
+        result = addEnvironment(a, *sceneOut);
+    }
     vplContext_SetProgress(context, NULL, NULL); // an interrupted render still writes its picture
     return result;
 }

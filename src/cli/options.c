@@ -99,6 +99,16 @@ static bool readText(const Option* o, const char* value, Arguments* a)
     return store(o, a, &value, sizeof value);
 }
 
+static bool readSky(const Option* o, const char* value, Arguments* a)
+{
+    vplEnvironmentDef sky = vplDefaultEnvironmentDef();
+    return parseSky(value, &sky)
+               ? store(o, a, &value, sizeof value)
+               : refuse(o, value,
+                        "ELEVATION in [0, 90] degrees, and behind commas TURBIDITY in [2, 10] and TURN in "
+                        "degrees");
+}
+
 static bool readChoice(const Option* o, const char* value, Arguments* a)
 {
     const size_t length = strlen(value);
@@ -197,6 +207,16 @@ static const Option OWN[] = {
      NULL},
     {"no-ground", NULL, NULL, ON_SCENES, readFlag, AT(noGround), 0, 0,
      "no ground under a SCENE that is a mesh (.obj)", NULL},
+    {"environment", "FILE|R,G,B", NULL, ON_SCENES, readText, AT(environment), 0, 0,
+     "light from all around instead of the scene's own: a picture of all directions (.hdr, .pfm, .exr; the "
+     "middle is -z, "
+     "y is up), or one radiance in W/(m^2 sr)",
+     NULL},
+    {"sky", "E[,T[,TURN]]", NULL, ON_SCENES, readSky, AT(sky), 0, 0,
+     "a clear sky and its sun instead: elevation of the sun in degrees, turbidity from 2 (very clear) to 10 "
+     "(hazy), default "
+     "3, and degrees by which the sun is turned from +x, counter-clockwise seen from above",
+     NULL},
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics are numbered in the same way",

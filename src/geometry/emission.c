@@ -108,6 +108,11 @@ static void listSources(vplEmission* e, Lister* l)
                                                             : VPL_PI * e->radius * e->radius;
         list(l, i, -1, factor, emitter->intensity);
     }
+    if (g->environment != NULL) {
+        const int before = l->count;
+        list(l, -1, -1, VPL_PI * e->radius * e->radius, g->environment->irradiance);
+        e->environment = l->count > before ? before : -1;
+    }
     e->firstTriangle = l->count;
     for (int i = 0; g->emits && i < g->triangleCount; i++) {
         if (vplRgbMean(radianceOf(g, i)) > 0) {
@@ -128,7 +133,7 @@ static void coverGeometry(vplEmission* e)
 static vplResult fill(vplEmission* e, const vplEmitterDef* emitters)
 {
     const vplGeometry* g = e->geometry;
-    int capacity = e->emitterCount;
+    int capacity = e->emitterCount + (g->environment != NULL);
     for (int i = 0; g->emits && i < g->triangleCount; i++) {
         capacity += vplRgbMean(radianceOf(g, i)) > 0;
     }
@@ -155,8 +160,11 @@ vplResult vplEmission_Create(const vplGeometry* geometry, const vplEmitterDef* e
     vplEmission* e = vplArena_AllocZero(arena, 1, sizeof *e);
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
-        *e = (vplEmission){
-            .geometry = geometry, .emitterCount = emitterCount, .arena = arena, .context = geometry->context};
+        *e = (vplEmission){.geometry = geometry,
+                           .emitterCount = emitterCount,
+                           .environment = -1,
+                           .arena = arena,
+                           .context = geometry->context};
         result = fill(e, emitters);
     }
     return vplArena_Deliver(arena, result, e, emissionOut);

@@ -66,6 +66,18 @@ static void startFromEmitter(const vplEmission* e, const vplEmitterDef* emitter,
     p->normal = p->ray.direction;
 }
 
+// Light of one direction covers the disc with its irradiance over the density of the direction.
+static void startFromEnvironment(const vplEmission* e, const float u[4], double factor, vplParticle* p)
+{
+    const vplEnvironment* environment = e->geometry->environment;
+    const vplEnvironmentSample sky = vplEnvironment_Sample(environment, (double)u[2], (double)u[3]);
+    p->ray.direction = vplNegate(sky.direction);
+    p->ray.origin = startOutside(e, p->ray.direction, u[0], u[1]);
+    p->ray.skip = (vplSkip){0, 0};
+    p->normal = p->ray.direction;
+    p->flux = vplScaleRadiometric(factor * VPL_PI * e->radius * e->radius / sky.density, sky.light);
+}
+
 bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],
                                 vplParticle* particleOut)
 {
@@ -84,6 +96,9 @@ bool vplEmission_SampleParticle(const vplEmission* emission, double choice, cons
         p.ray = vplGeometry_Leave(emission->geometry, &start, direction);
         p.position = start.position;
         p.normal = start.normal;
+    } else if (source->emitter < 0) {
+        startFromEnvironment(emission, u, vplEmission_Power(emission) / (sums[1] - sums[0]), &p);
+        p.position = p.ray.origin;
     } else {
         startFromEmitter(emission, &emission->emitters[source->emitter], u, &p);
         p.position = p.ray.origin;

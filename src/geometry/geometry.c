@@ -125,7 +125,7 @@ static vplResult build(const vplScene* scene, vplGeometry* g)
     summarise(g);
     TRY(vplMarkCoplanar(g, builder.objects));
     warnOfDistance(g);
-    return VPL_SUCCESS;
+    return vplEnvironment_Create(scene, &g->environment);
 }
 
 vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geometryOut)
@@ -168,6 +168,7 @@ void vplGeometry_Destroy(vplGeometry* geometry)
     if (geometry != NULL) {
         vplBvh_Destroy(geometry->rayTree);
         vplReleasePaint(geometry);
+        vplEnvironment_Destroy(geometry->environment);
         vplArena_Destroy(geometry->arena);
     }
 }

@@ -4,6 +4,8 @@
 // vplEmission_SampleParticle.
 #include "lights/particles.h"
 
+#include "geometry/emission.h"
+#include "lights/sky_lights.h"
 #include "base/context.h"
 #include "geometry/triangle.h"
 #include "math/sampling.h"
@@ -119,6 +121,18 @@ static vplHit sourceOf(const vplStarts* s, const vplParticle* p)
     return hit;
 }
 
+// The light that Keller's particle leaves where it starts. Light of the environment is far away; its flux is as much
+// larger as its distance squared, so that surfaces receive what parallel light brings them.
+vplVirtualLight vplStart_Light(const vplStarts* s, const vplStart* p)
+{
+    if (s->emission != NULL && p->onSky) {
+        return (vplVirtualLight){vplSkyLight_Position(s->emission, vplNegate(p->normal)), p->normal,
+                                 vplScaleRadiometric((double)VPL_SKY_DISTANCE * VPL_SKY_DISTANCE, p->light),
+                                 .object = VPL_SKY_OBJECT};
+    }
+    return (vplVirtualLight){p->from.position, p->normal, p->light, .object = p->from.object};
+}
+
 bool vplStarts_Get(const vplStarts* s, int particle, vplStart* out)
 {
     float u[4];
@@ -129,7 +143,12 @@ bool vplStarts_Get(const vplStarts* s, int particle, vplStart* out)
         if (!vplEmission_SampleParticle(s->emission, vplSampleSource_Emitter(&s->samples, particle), u, &p)) {
             return false;
         }
-        *out = (vplStart){p.ray, p.normal, p.flux, sourceOf(s, &p), s->emission->sources[p.source].emitter};
+        *out = (vplStart){p.ray,
+                          p.normal,
+                          p.flux,
+                          sourceOf(s, &p),
+                          s->emission->sources[p.source].emitter,
+                          p.source == s->emission->environment};
     } else {
         float inverseProbability;
         const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
@@ -139,7 +158,8 @@ bool vplStarts_Get(const vplStarts* s, int particle, vplStart* out)
                        direction,
                        vplRgbScale(inverseProbability, emitter->intensity),
                        {.object = -1, .face = VPL_FACE_NONE, .triangle = -1, .position = emitter->position},
-                       (int)(emitter - s->emitters)};
+                       (int)(emitter - s->emitters),
+                       false};
     }
     if (s->def->directions != NULL) {
         out->ray.direction = s->def->directions[particle];

@@ -113,8 +113,8 @@ static void followParticle(Simulation* s, int particle)
     const bool started = vplStarts_Get(&s->starts, particle, &p);
     int step = 0;
     if (started && s->keller) {
-        leaveLight(s, particle, step++,
-                   &(vplVirtualLight){p.from.position, p.normal, p.light, .object = p.from.object});
+        const vplVirtualLight first = vplStart_Light(&s->starts, &p);
+        leaveLight(s, particle, step++, &first);
     }
     for (; started && step < s->stepCount && particle < s->reach[step]; step++) {
         const vplReflectiveMap* map = step == s->keller ? mapOf(s, &p) : NULL;

@@ -58,11 +58,15 @@ typedef struct vplStart {
     vplVec3 normal; // of an area light; of other emitters, the direction
     vplRgb light;   // documented: the emitter's intensity; else flux in W; as if one particle carried all
     vplHit from;    // the position, and the surface it leaves; its object is -1 in free space
-    int emitter;    // index; -1: a triangle that emits
+    int emitter;    // index; -1: a triangle that emits, or the environment
+    bool onSky;     // it comes from the environment
 } vplStart;
 
 vplStarts vplStarts_Make(const vplGeometry* geometry, const vplEmission* emission,
                          const vplEmitterDef* emitters, int emitterCount, const vplParticleDef* def);
+
+// The light of step 0 that a particle leaves in Keller's walk.
+vplVirtualLight vplStart_Light(const vplStarts* starts, const vplStart* start);
 
 // False where nothing emits.
 bool vplStarts_Get(const vplStarts* starts, int particle, vplStart* startOut);

@@ -76,12 +76,33 @@ static double along(vplVec3 n, const double direction[3])
     return n.x * direction[0] + n.y * direction[1] + n.z * direction[2];
 }
 
+// The environment in one direction. A particle's start has the density of the direction, times the environment's share of
+// all power over the area of the disc that particles cover; that share remains of the ratio.
+static Connection connectToSky(const vplPathScene* s, const vplPathVertex* vertex, vplVec3 towards)
+{
+    const double to[3] = {towards.x, towards.y, towards.z};
+    const double flat = along(vertex->normal, to), cosine = along(vertex->shading, to);
+    double density;
+    const vplRgb light = vplEnvironment_Light(s->geometry->environment, towards, &density);
+    Connection found = {.distance = FLT_MAX, .cosineAtLight = 1};
+    if (!(density > 0 && flat > 0 && cosine > 0)) {
+        return (Connection){.distance = 0};
+    }
+    found.bsdfRatio = cosine / VPL_PI / density;
+    found.value = vplRadiance_Reflect(found.bsdfRatio, vertex->rho, vplRadiance_Of(light));
+    found.particleRatio = s->skyShare * flat / vertex->density;
+    return found;
+}
+
 // Sources are chosen by power and particles leave emitters by intensity, so the density of a particle from an
 // emitter is its intensity over the power of all sources. A particle's start on a triangle has the density of
 // a chosen point, times the triangles' share of all power; that share and the lobe of the cosine remain of
 // the ratio.
 static Connection connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint* light)
 {
+    if (light->emitter < 0 && light->triangle < 0) {
+        return connectToSky(s, vertex, vplNegate(light->normal));
+    }
     const vplEmitterDef* e = light->emitter >= 0 ? &s->emission->emitters[light->emitter] : NULL;
     const bool fromInfinity = e != NULL && e->type == VPL_EMITTER_DIRECTIONAL;
     Connection none = {.distance = 0}, found = {.cosineAtLight = 1};
@@ -135,15 +156,21 @@ static bool isVisible(vplPathState* path, const vplPathVertex* v, vplVec3 point,
     return !vplGeometry_IsOccluded(g, &ray, (float)(1 - (shorter < 0.5 ? shorter : 0.5)));
 }
 
+// Tests whether nothing is in a direction from the vertex.
+static bool isOpen(vplPathState* path, const vplPathVertex* v, vplVec3 towards)
+{
+    const vplRay ray = vplGeometry_Leave(path->scene->geometry, &v->hit, towards);
+    path->rays++;
+    return !vplGeometry_IsOccluded(path->scene->geometry, &ray, FLT_MAX);
+}
+
 static bool isEmitterVisible(vplPathState* path, const vplPathVertex* v, const vplEmitterDef* e,
                              const Connection* c)
 {
     if (e->type != VPL_EMITTER_DIRECTIONAL) {
         return isVisible(path, v, e->position, c->distance, 1);
     }
-    vplRay ray = vplGeometry_Leave(path->scene->geometry, &v->hit, vplNegate(e->direction));
-    path->rays++;
-    return !vplGeometry_IsOccluded(path->scene->geometry, &ray, FLT_MAX);
+    return isOpen(path, v, vplNegate(e->direction));
 }
 
 // ---- light sampling
@@ -202,12 +229,24 @@ static void addEmitter(vplPathState* path, const vplPathVertex* v, double choice
     }
 }
 
+static void addSky(vplPathState* path, const vplPathVertex* v, const float u[2], vplRadiance* sum)
+{
+    const vplVec3 towards =
+        vplEnvironment_Sample(path->scene->geometry->environment, (double)u[0], (double)u[1]).direction;
+    const Connection c = connectToSky(path->scene, v, towards);
+    const double weight = lightSamplingWeight(path->scene, &c);
+    if (weight > 0 && isOpen(path, v, towards)) {
+        vplRadiance_Add(sum, vplRadiance_Scale(weight, c.value));
+    }
+}
+
 vplRadiance vplSampleDirect(vplPathState* path, const vplPathVertex* vertex, const float u[2], uint32_t set)
 {
     const int emitters = path->scene->emission->emitterCount;
     vplRadiance sum = {0, 0, 0};
     float more[4] = {0};
-    if (emitters > 1) {
+    const bool sky = path->scene->geometry->environment != NULL;
+    if (emitters > 1 || sky) {
         vplPath_Draw(path, set, more);
     }
     if (emitters > 0) {
@@ -215,6 +254,9 @@ vplRadiance vplSampleDirect(vplPathState* path, const vplPathVertex* vertex, con
     }
     if (path->scene->trianglePower > 0) {
         addTriangle(path, vertex, u, &sum);
+    }
+    if (sky) {
+        addSky(path, vertex, more + 2, &sum);
     }
     return sum;
 }
@@ -231,6 +273,17 @@ vplRadiance vplHitEmission(const vplPathScene* s, const vplPathVertex* vertex, c
     vplLightPoint light = {-1, hit->triangle, hit->position, hit->normal};
     const Connection c = connect(s, vertex, &light);
     return vplRadiance_Scale(bsdfSamplingWeight(s, &c), vplRadiance_Of(emission));
+}
+
+vplRadiance vplMissEmission(const vplPathScene* s, const vplPathVertex* vertex, vplVec3 direction)
+{
+    if (s->geometry->environment == NULL) {
+        return (vplRadiance){0, 0, 0};
+    }
+    const Connection c = connectToSky(s, vertex, direction);
+    double density;
+    const vplRgb light = vplEnvironment_Light(s->geometry->environment, direction, &density);
+    return vplRadiance_Scale(c.distance > 0 ? bsdfSamplingWeight(s, &c) : 0, vplRadiance_Of(light));
 }
 
 // ---- particles

@@ -69,7 +69,7 @@ static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLan
         if (particle->landed && !last && bounce + 1 >= s->def.firstBounce) {
             add(sum, throughput, vplConnectToParticle(path, &vertex, particle));
         }
-        if (last && s->trianglePower <= 0) {
+        if (last && s->trianglePower <= 0 && s->geometry->environment == NULL) {
             return;
         }
         throughput = vplRgbMul(throughput, vertex.rho);
@@ -81,6 +81,9 @@ static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLan
         vplHit hit;
         path->rays++;
         if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
+            if (counts) {
+                add(sum, throughput, vplMissEmission(s, &vertex, direction));
+            }
             return;
         }
         if (counts) {
@@ -100,6 +103,10 @@ void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
     vplRay ray = vplPathScene_CameraRay(s, x, y, u);
     path->rays++;
     if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit) || (double)hit.t > camera->far - camera->near) {
+        if (s->def.emission && s->geometry->environment != NULL) {
+            const vplVec3 sight = vplNormalize(ray.direction);
+            vplRadiance_Add(sum, vplRadiance_Of(vplEnvironment_Radiance(s->geometry->environment, sight)));
+        }
         return;
     }
     if (s->def.emission) {

@@ -26,6 +26,10 @@ vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const 
     s->scaleX = s->scaleY * def->width / def->height;
     TRY(vplEmission_Create(geometry, def->emitters, def->emitterCount, &s->emission));
     s->power = vplEmission_Power(s->emission);
+    if (s->emission->environment >= 0) {
+        const double* sums = s->emission->cumulative + s->emission->environment;
+        s->skyShare = (sums[1] - sums[0]) / s->power / (VPL_PI * s->emission->radius * s->emission->radius);
+    }
     s->trianglePower = s->power - s->emission->cumulative[s->emission->firstTriangle];
     return VPL_SUCCESS;
 }

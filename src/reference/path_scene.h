@@ -46,6 +46,8 @@ typedef struct vplPathScene {
     vplVec3 right, up, forward;  // of the camera
     double scaleX, scaleY;       // tangents of its half-angles
     double power, trianglePower; // W, of all sources and of the triangles among them
+    // The environment's share of all power, over the area of the disc that its particles cover, per square metre.
+    double skyShare;
 } vplPathScene;
 
 // The geometry, the camera and the emitters must outlive the scene. vplEmission_Destroy(scene.emission) frees

@@ -73,7 +73,8 @@ static size_t sizeOf(const Header* h)
 static uint32_t partsOf(const vplPlan* p)
 {
     const bool paths = p->options.method == VPL_METHOD_PATH;
-    const bool onSurfaces = p->options.method == VPL_METHOD_KELLER && p->hasAreaLights; // see addDirect
+    const bool onSurfaces =
+        p->options.method == VPL_METHOD_KELLER && (p->hasAreaLights || p->hasSky); // see addDirect
     const uint32_t parts = paths ? PATHS : p->progressive ? PASSES : 0;
     return parts | (parts != 0 && p->splitsLight && (paths || onSurfaces) ? DIRECT : 0);
 }

@@ -98,7 +98,9 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
 {
     const vplRenderOptions* o = &s->plan->options;
     const bool area = s->lamps && o->method != VPL_METHOD_KELLER;
-    const double rays = (s->plan->emitterRays ? s->emitters : 0) + (area ? o->lights.areaLightSamples : 0);
+    const bool sky = s->plan->hasSky && o->method != VPL_METHOD_KELLER;
+    const double rays = (s->plan->emitterRays ? s->emitters : 0) + (area ? o->lights.areaLightSamples : 0) +
+                        (sky ? o->lights.skySamples : 0);
     if (s->plan->showsDirect) {
         // Emitters are mostly in front of what is seen, also where surfaces do not face each other.
         w->counts[SHADOW_RAY] += pixels * rays * fmax(0.24, 0.6 * s->probe.facing) * s->depth;
@@ -273,7 +275,9 @@ static vplWork workOf(const Scale* s, vplStageId id)
                                                             s->depth * (p->patchGroups > 0 ? 3 : 1);
         break;
     case VPL_STAGE_PATCH_LIGHT:
-        w.counts[SHADOW_RAY] = s->sides * o->radiosity.lightSamples * fmax(s->emitters, s->lamps) * s->depth;
+        w.counts[SHADOW_RAY] = s->sides * o->radiosity.lightSamples *
+                               (fmax(s->emitters, s->lamps) + (p->hasSky ? 0.5 * o->lights.skySamples : 0)) *
+                               s->depth;
         break;
     case VPL_STAGE_SOLUTION: // about 20 sweeps
         w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.55 * pairs;
@@ -294,9 +298,9 @@ static vplWork workOf(const Scale* s, vplStageId id)
 }
 
 // Keller's lights of step 0 lie on area lights; elsewhere they are the emitters themselves, which cast shadows by maps.
-static double drawnLights(const vplPlan* p, const vplGeometry* g)
+static double drawnLights(const vplPlan* p)
 {
-    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !g->emits;
+    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights && !p->hasSky;
     return (double)p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
 }
 
@@ -307,7 +311,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
                .probe = {1, 0.8, 0.4},
                .triangles = g->triangleCount,
                .pixels = (double)p->options.output.width * p->options.output.height,
-               .lights = drawnLights(p, g),
+               .lights = drawnLights(p),
                .lamps = g->emits,
                .area = vplGeometry_Area(g),
                .sides = p->patchSides,

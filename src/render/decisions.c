@@ -262,11 +262,12 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
         const vplRgb e = vplScene_GetMaterial(scene, i)->emission;
         p->hasAreaLights = p->hasAreaLights || e.r > 0 || e.g > 0 || e.b > 0;
     }
+    p->hasSky = vplScene_GetEnvironment(scene)->type != VPL_ENVIRONMENT_NONE;
 }
 
 static void chooseRays(vplPlan* p)
 {
-    bool direct = p->hasAreaLights || p->emitterRays;
+    bool direct = p->hasAreaLights || p->hasSky || p->emitterRays;
     for (int i = 0; i < p->emitterCount; i++) {
         direct = direct || p->emitters[i].type == VPL_EMITTER_DIRECTIONAL;
     }
@@ -443,6 +444,11 @@ vplResult vplDecideLightShadows(vplRunner* r, vplPlan* p)
                           ? "there are no lights to draw maps for"
                           : "each pixel evaluates few of the lights, which maps cannot know before");
         }
+        return VPL_SUCCESS;
+    }
+    if (p->hasSky && p->options.method == VPL_METHOD_KELLER) {
+        *shadows = VPL_LIGHT_SHADOWS_RAY;
+        vplDecide(p, "light-shadows", "some of the lights are in the sky, too far away for maps");
         return VPL_SUCCESS;
     }
     TRY(vplRunner_RunPlan(r, p, VPL_STAGE_VIRTUAL_LIGHTS));

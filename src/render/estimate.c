@@ -150,7 +150,7 @@ static bool drawsDirect(const vplPlan* p)
 {
     const bool keller = p->options.method == VPL_METHOD_KELLER;
     return p->splitsLight && p->options.method != VPL_METHOD_PATH &&
-           (!p->progressive || (keller && p->hasAreaLights));
+           (!p->progressive || (keller && (p->hasAreaLights || p->hasSky)));
 }
 
 // Bytes that shading holds for each light: its copy and class where lights are interleaved, and what lights
@@ -186,6 +186,8 @@ static Bytes picture(const Scale* s)
     double scratch = pipelineScratch(s) + sampleScratch(s) + RASTER_VIEW * s->triangles;
     scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
+    // What is behind all surfaces is a picture of its own, when the memory of interleaved shading is free again.
+    scratch += s->plan->hasSky && s->plan->showsDirect && !vplPixelsShareLight(s->plan) ? 12 * s->pixels : 0;
     scratch += s->plan->showsVirtual ? lightScratch(s) : 0;
     scratch += s->plan->gathers ? 12 * s->sides + 4.0 * s->plan->patches : 0; // what rays meet
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
@@ -211,7 +213,9 @@ static Bytes estimate(const Scale* s, vplStageId id)
                            p->emitterCount * (double)sizeof(vplShadow),
                        2e5 + RASTER_CUBE * s->triangles};
     case VPL_STAGE_AREA_LIGHTS:
-        return (Bytes){o->lights.areaLightSamples * (double)sizeof(vplShadeLight), 0};
+        return (Bytes){(o->lights.areaLightSamples + (p->hasSky ? o->lights.skySamples : 0)) *
+                           (double)sizeof(vplShadeLight),
+                       0};
     case VPL_STAGE_REFLECTIVE_MAPS: // a distance and a triangle per texel
         return (Bytes){rsmFaces(p) * rsmTexels * 8, 1.5e5 + RASTER_VIEW * s->triangles};
     case VPL_STAGE_PARTICLES: // two counts and a flag per particle
@@ -283,7 +287,7 @@ static Bytes layers(const Scale* s)
 // Keller's lights of step 0 are drawn where they lie on area lights; elsewhere they are the emitter itself.
 static int64_t drawnLights(const vplRunner* r, const vplPlan* p)
 {
-    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights;
+    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights && !p->hasSky;
     const vplVirtualLights* known = r->history->slots[VPL_STAGE_VIRTUAL_LIGHTS].result;
     return known != NULL ? known->count : p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
 }

@@ -31,10 +31,28 @@ static const char* refuseLighting(const vplPlan* p)
     }
 }
 
+// A hemispherical map of a light in the sky would show the whole scene in a part of a texel.
+static const char* refuseSky(const vplPlan* p)
+{
+    const vplRenderOptions* o = &p->options;
+    if (!p->hasSky) {
+        return NULL;
+    }
+    if (o->lighting == VPL_LIGHTING_DOCUMENTED) {
+        return "documented lighting knows no environment; use physical lighting";
+    }
+    return o->method == VPL_METHOD_KELLER && o->lights.shadows == VPL_LIGHT_SHADOWS_MAP
+               ? "lights of the environment are too far away for shadow maps; use --light-shadows ray"
+               : NULL;
+}
+
 static const char* refuseOptions(const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
     const vplShow show = o->output.show;
+    if (refuseSky(p) != NULL) {
+        return refuseSky(p);
+    }
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER && o->method != VPL_METHOD_SSVP) {
         return "only SSVP's lights have clusters to cast shadows by";
     }

@@ -200,7 +200,7 @@ vplResult vplRenderer_OpenSums(vplRenderer* r)
 static vplResult addDirect(vplRenderer* r)
 {
     const vplPlan* p = r->plan;
-    const bool onSurfaces = p->options.method == VPL_METHOD_KELLER && p->hasAreaLights;
+    const bool onSurfaces = p->options.method == VPL_METHOD_KELLER && (p->hasAreaLights || p->hasSky);
     if (!p->splitsLight || (p->progressive && !onSurfaces)) {
         return VPL_SUCCESS;
     }

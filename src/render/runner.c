@@ -198,7 +198,8 @@ static uint64_t hashValue(const vplRun* run, const char* word, uint32_t build, u
         return hashBytes(state, &shift, sizeof shift);
     }
     if (strcmp(word, "ADAPTIVE") == 0) { // adaptive patches depend on all that their drafts are made with
-        const char* drafts = "form-factors form-samples row-sums link-error patch-light camera seed";
+        const char* drafts =
+            "form-factors form-samples row-sums link-error patch-light sky-samples camera seed";
         const uint64_t inner =
             o->radiosity.placement == VPL_PATCHES_ADAPTIVE ? findKey(run, drafts, build) : 0;
         return hashBytes(state, &inner, sizeof inner);

@@ -62,15 +62,22 @@ static bool needsEmitterMaps(const vplPlan* p, char* why)
 static bool needsAreaLights(const vplPlan* p, char* why)
 {
     const bool documented = p->options.lighting == VPL_LIGHTING_DOCUMENTED;
-    const char* problem = !p->showsDirect && !p->compensates && !p->gathers ? NOT_DIRECT
-                          : !p->hasAreaLights                               ? "no material emits"
+    const bool patches = p->hasSky && p->showsPatches; // which the environment lights
+    const char* problem = !p->showsDirect && !p->compensates && !p->gathers && !patches ? NOT_DIRECT
+                          : !p->hasAreaLights && !p->hasSky                             ? "no material emits"
                           : documented ? "documented lighting has no area lights"
                           : p->options.method == VPL_METHOD_KELLER
-                              ? "virtual lights stand for area lights, too"
+                              ? p->hasSky ? "virtual lights stand for area lights and the environment, too"
+                                          : "virtual lights stand for area lights, too"
                               : NULL;
-    return problem != NULL ? because(why, false, "%s", problem)
-                           : because(why, true, "%d points stand for all area lights in direct light",
-                                     p->options.lights.areaLightSamples);
+    if (problem != NULL) {
+        return because(why, false, "%s", problem);
+    }
+    return !p->hasSky ? because(why, true, "%d points stand for all area lights in direct light",
+                                p->options.lights.areaLightSamples)
+                      : because(why, true, "%d directions stand for the environment in direct light%s",
+                                p->options.lights.skySamples,
+                                p->hasAreaLights ? ", and points for area lights" : "");
 }
 
 static bool needsReflectiveMaps(const vplPlan* p, char* why)
@@ -236,7 +243,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size supersample",
         needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps, .report = NULL},
     [VPL_STAGE_AREA_LIGHTS] = {
-        "area lights", 0.15, IN(GEOMETRY), "area-light-samples",
+        "area lights", 0.15, IN(GEOMETRY), "area-light-samples sky-samples",
         needsAreaLights, vplMakeAreaLights, NULL, .report = NULL},
     [VPL_STAGE_REFLECTIVE_MAPS] = {
         "reflective map", 0.05, IN(GEOMETRY), "EMITTERS rsm-size",
@@ -289,7 +296,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), FACTOR_KEY,
         needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
     [VPL_STAGE_PATCH_LIGHT] = {
-        "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed gather EMITTERS",
+        "patch light", 0.65, IN(GEOMETRY) | IN(AREA_LIGHTS) | IN(PATCHES) | IN(SIDES), "patch-light seed gather EMITTERS",
         needsPatchLight, vplMakePatchLight, NULL, .report = NULL},
     [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",

@@ -36,7 +36,8 @@ enum { OBJ_SCENE_COOKIE = 0x56504f53 };
 
 vplObjSceneDef vplDefaultObjSceneDef(void)
 {
-    return (vplObjSceneDef){16.0 / 9, true, true, OBJ_SCENE_COOKIE};
+    return (vplObjSceneDef){
+        .aspect = 16.0 / 9, .ground = true, .areaLight = true, .cookie = OBJ_SCENE_COOKIE};
 }
 
 // Half a field of view: its slopes at the edges of the picture, and without the margin.
@@ -357,7 +358,7 @@ static vplResult fill(vplScene* scene, const char* path, const vplObjSceneDef* d
     object.type = VPL_OBJECT_MESH;
     object.material = -1;
     TRY(vplScene_AddObject(scene, &object, NULL));
-    const bool light = !emits(scene);
+    const bool light = !def->unlit && !emits(scene);
     const Field field = fieldOf(def->aspect);
     const Look look = lookAt(&scene->meshes[object.mesh], &field);
     const Ground ground = groundUnder(&look, &field);

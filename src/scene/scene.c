@@ -66,6 +66,7 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
         scene->context = context;
         scene->arena = arena;
         scene->stamp = vplNextStamp(context);
+        scene->environment = vplDefaultEnvironmentDef();
     }
     return vplArena_Deliver(arena, result, scene, sceneOut);
 }

@@ -40,6 +40,9 @@ struct vplScene {
     vplMeshDef* meshes;
     vplObjectDef* objects;
     vplEmitter* emitters;
+    vplEnvironmentDef environment;
+    float* environmentPixels; // in the arena
+    int sun;                  // 1 + index of the environment's emitter; 0: none
     int cameraCount, textureCount, materialCount, meshCount, objectCount, emitterCount;
     size_t cameraCapacity, textureCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
 };
@@ -81,6 +84,7 @@ vplFault vplCheckMaterial(const vplMaterialDef* def, int textureCount);
 vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);
+vplFault vplCheckEnvironment(const vplEnvironmentDef* def);
 
 // Checks a camera def and its cookie; the message begins with `subject`.
 vplResult vplScene_CheckCamera(const vplScene* scene, const char* subject, const vplCameraDef* def);

@@ -132,6 +132,19 @@ static uint64_t addObject(uint64_t state, const vplObjectDef* d)
     return state;
 }
 
+// Scenes without an environment keep the hash that they had before there were environments. The sun is an emitter.
+static uint64_t addEnvironment(uint64_t state, const vplEnvironmentDef* d)
+{
+    if (d->type == VPL_ENVIRONMENT_NONE) {
+        return state;
+    }
+    state = addNumber(addNumber(addInt(state, (int)d->type), d->scale), d->rotate);
+    return d->type == VPL_ENVIRONMENT_CONSTANT
+               ? addColour(state, d->radiance)
+               : vplHashFloats(addInts(state, (const int[2]){d->width, d->height}, 2), d->pixels,
+                               3 * (size_t)d->width * (size_t)d->height);
+}
+
 uint64_t vplScene_GetHash(const vplScene* s)
 {
     const int counts[5] = {s->cameraCount, s->materialCount, s->meshCount, s->objectCount, s->emitterCount};
@@ -154,5 +167,5 @@ uint64_t vplScene_GetHash(const vplScene* s)
     for (int i = 0; i < s->emitterCount; i++) {
         state = addEmitter(state, &s->emitters[i]);
     }
-    return state;
+    return addEnvironment(state, &s->environment);
 }

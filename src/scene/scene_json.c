@@ -181,14 +181,16 @@ static vplResult readCameras(vplSceneLoader* l, const vplJson* root)
 
 static vplResult readRoot(vplSceneLoader* l)
 {
-    static const char* const keys[] = {"camera", "cameras", "materials", "!objects", "lights", NULL};
+    static const char* const keys[] = {"camera", "cameras",     "materials", "!objects",
+                                       "lights", "environment", NULL};
     const vplJson root = vplJson_Root(&l->json);
     TRY(vplJson_CheckKeys(&root, keys));
     TRY(readCameras(l, &root));
     TRY(readMaterials(l, &root));
     l->materialCount = l->scene->materialCount;
     TRY(readArray(l, &root, "objects", vplSceneLoader_ReadObject));
-    return readArray(l, &root, "lights", readEmitter);
+    TRY(readArray(l, &root, "lights", readEmitter));
+    return vplSceneLoader_ReadEnvironment(l, &root);
 }
 
 static vplResult readFile(vplSceneLoader* l, const char* path)

@@ -34,6 +34,9 @@ vplResult vplJson_ReadType(const vplJson* object, const char* const* names, cons
 // Reads one of "objects" and adds it to the scene.
 vplResult vplSceneLoader_ReadObject(vplSceneLoader* l, const vplJson* object);
 
+// Reads "environment" of the root, if there is one.
+vplResult vplSceneLoader_ReadEnvironment(vplSceneLoader* l, const vplJson* root);
+
 // Reads "path" of camera or emitter `index`, if there is one.
 vplResult vplSceneLoader_ReadCameraPath(vplSceneLoader* l, const vplJson* camera, int index);
 vplResult vplSceneLoader_ReadEmitterPath(vplSceneLoader* l, const vplJson* emitter, int index);

@@ -6,6 +6,7 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -231,6 +232,49 @@ vplFault vplCheckEmitter(const vplEmitterDef* def)
         }
     }
     return f;
+}
+
+static vplFault checkPicture(const vplEnvironmentDef* def)
+{
+    const int size[2] = {def->width, def->height};
+    for (int i = 0; i < 2; i++) {
+        if (size[i] < 1 || size[i] > VPL_MAX_IMAGE_SIZE) {
+            return fault(i == 0 ? "width" : "height", -1, "is %d, must be in [1, %d]", size[i],
+                         VPL_MAX_IMAGE_SIZE);
+        }
+    }
+    if (def->pixels == NULL) {
+        return fault("pixels", -1, "must not be NULL");
+    }
+    const size_t count = 3 * (size_t)def->width * (size_t)def->height;
+    for (size_t i = 0; i < count; i++) {
+        if (!(def->pixels[i] >= 0 && def->pixels[i] <= VPL_MAX_MAGNITUDE)) {
+            return fault("pixels", i <= INT_MAX ? (int)i : -1, "is %g, must be in [0, %g]",
+                         (double)def->pixels[i], (double)VPL_MAX_MAGNITUDE);
+        }
+    }
+    return FINE;
+}
+
+vplFault vplCheckEnvironment(const vplEnvironmentDef* def)
+{
+    if ((int)def->type < VPL_ENVIRONMENT_NONE || def->type > VPL_ENVIRONMENT_SKY) {
+        return fault("type", -1, "is %d, must be a vplEnvironmentType", (int)def->type);
+    }
+    vplFault f = checkColour("radiance", def->radiance, VPL_MAX_MAGNITUDE);
+    if (f.field == NULL && !(def->scale >= 0 && def->scale <= VPL_MAX_MAGNITUDE_DOUBLE)) {
+        return fault("scale", -1, "is %g, must be in [0, %g]", def->scale, VPL_MAX_MAGNITUDE_DOUBLE);
+    }
+    if (f.field == NULL && !(fabs(def->rotate) <= 1e6)) {
+        return fault("rotate", -1, "is %g, must be in [-1e6, 1e6] radians", def->rotate);
+    }
+    if (f.field == NULL && !(def->elevation >= 0 && def->elevation <= VPL_PI / 2)) {
+        return fault("elevation", -1, "is %g, must be in [0, pi/2] radians", def->elevation);
+    }
+    if (f.field == NULL && !(def->turbidity >= 2 && def->turbidity <= 10)) {
+        return fault("turbidity", -1, "is %g, must be in [2, 10]", def->turbidity);
+    }
+    return f.field == NULL && def->type == VPL_ENVIRONMENT_PICTURE ? checkPicture(def) : f;
 }
 
 vplFault vplCheckKeyFrame(double before, double frame)

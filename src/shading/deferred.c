@@ -11,7 +11,8 @@ void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn
 {
     const vplShadeDef* def = shading->def;
     shading->tileTask = tileTask;
-    framebuffer->samples = def->output == VPL_OUTPUT_RADIANCE ? shading->samples : 0;
+    const bool smooth = def->output == VPL_OUTPUT_RADIANCE || def->output == VPL_OUTPUT_BACKGROUND;
+    framebuffer->samples = smooth ? shading->samples : 0;
     framebuffer->planeCount = VPL_PLANE_POSITION + 3;
     shading->smoothsRims = framebuffer->samples > 0 && shading->direct.emitterCount > 0;
     framebuffer->scratchBytes =

@@ -68,9 +68,10 @@ static vplResult checkDistance(const vplContext* context, const char* name, floa
                          (double)distance);
 }
 
-vplResult vplShadeDef_Check(const vplContext* context, const vplView* view, const vplShadeDef* def,
+vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                             const vplImage* image)
 {
+    const vplContext* context = geometry->context;
     if (image->width != view->width || image->height != view->height) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "image is %dx%d, must be %dx%d as the view",
                        image->width, image->height, view->width, view->height);
@@ -89,6 +90,9 @@ vplResult vplShadeDef_Check(const vplContext* context, const vplView* view, cons
             c->rayCount, c->hitLights, VPL_MAX_NEAR_RAYS);
     }
     TRY(checkGather(context, def));
+    if (def->output == VPL_OUTPUT_BACKGROUND && geometry->environment == NULL) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "a background needs an environment");
+    }
     if (def->output == VPL_OUTPUT_SHADOW_FACTOR &&
         (def->emitterCount < 1 ||
          ((def->emitterMaps == NULL || def->emitterMaps[0] == NULL) && def->shadows[0].map == NULL))) {

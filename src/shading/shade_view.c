@@ -105,6 +105,9 @@ vplResult vplMakeColumns(vplShading* s)
 
 static const vplStrategy* chooseStrategy(const vplShadeDef* def)
 {
+    if (def->output == VPL_OUTPUT_BACKGROUND) {
+        return &vplBackgroundStrategy;
+    }
     if (!vplShowsLight(def->output)) {
         return &vplShowStrategy;
     }
@@ -150,7 +153,7 @@ static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplImage* image, vplShadeStats* statsOut)
 {
-    TRY(vplShadeDef_Check(geometry->context, view, def, image));
+    TRY(vplShadeDef_Check(geometry, view, def, image));
     vplShadeStats stats = {0};
     vplShading shading = vplShading_Make(geometry, view, def);
     shading.image = image;

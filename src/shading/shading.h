@@ -93,7 +93,7 @@ typedef struct vplShading {
 vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def);
 
 // Logs and refuses values out of range.
-vplResult vplShadeDef_Check(const vplContext* context, const vplView* view, const vplShadeDef* def,
+vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                             const vplImage* image);
 
 // The ways in which virtual lights reach the pixels.
@@ -103,8 +103,9 @@ typedef struct vplStrategy {
     vplResult (*finish)(vplShading* shading, vplShadeStats* stats);      // after all tiles; may be NULL
 } vplStrategy;
 
-// multipass and batched; deferred, also for pictures without virtual lights; stages of the G-buffer
-extern const vplStrategy vplPassesStrategy, vplDeferredStrategy, vplShowStrategy;
+// multipass and batched; deferred, also for pictures without virtual lights; stages of the G-buffer; what is behind all
+// surfaces
+extern const vplStrategy vplPassesStrategy, vplDeferredStrategy, vplShowStrategy, vplBackgroundStrategy;
 extern const vplStrategy vplInterleavedStrategy, vplLightcutsStrategy;
 
 // Returns true for pictures that show light, false for stages on the way to it.

@@ -28,6 +28,7 @@ failed=0
 . "$folder/numbers.sh"
 . "$folder/plan.sh"
 . "$folder/pictures.sh"
+. "$folder/sky.sh"
 . "$folder/frames.sh"
 . "$folder/goals.sh"
 . "$folder/save.sh"

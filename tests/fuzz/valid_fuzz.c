@@ -170,7 +170,8 @@ static vplScene* makeScene(vplContext* context, Bytes* b, FuzzLog* log)
 
 // Small work by default, and the largest values of options that make work. The time and memory of the others is bounded.
 #define SMALL                                                                                                \
-    "--size 8x6 --shadow-map 16 --particles 6 --spp 2 --area-light-samples 4 --light-map 8 --rsm-size 8 "    \
+    "--size 8x6 --shadow-map 16 --particles 6 --spp 2 --area-light-samples 4 --sky-samples 4 --light-map 8 " \
+    "--rsm-size 8 "                                                                                          \
     "--clusters 4 --first-bounce 12 --second-bounce 12 --paraboloid 8 --patches 30 --form-samples 2 "        \
     "--iterations 10 --oversampling 2 --pcf 4 --subdivisions 6 --max-bounces 8 --passes 1"
 
@@ -184,6 +185,7 @@ static const struct {
             {"light-map", 40},
             {"spp", 9},
             {"area-light-samples", 70},
+            {"sky-samples", 70},
             {"shadow-map", 70},
             {"pcf", 40},
             {"rsm-size", 40},

@@ -150,6 +150,12 @@ static bool sampleLightSource(const vplLitSearch* s, const vplRandom4* r, vplVec
     const int chosen = r->v[1] & 1 ? (int)((uint64_t)r->v[0] * (uint32_t)e->sourceCount >> 32)
                                    : vplEmission_Choose(e, 0, (double)vplUnitFloat(r->v[0]), &rest);
     const vplEmissionSource* source = &e->sources[chosen];
+    if (chosen == e->environment) {
+        const vplEnvironmentSample sky = vplEnvironment_Sample(
+            s->geometry->environment, (double)vplUnitFloat(r->v[2]), (double)vplUnitFloat(r->v[3]));
+        *from = vplAdd(point, vplScale(2.5f * (float)e->radius, sky.direction));
+        return true;
+    }
     if (source->emitter < 0) {
         const vplHit hit = vplGeometry_SampleTriangle(s->geometry, source->triangle, vplUnitFloat(r->v[2]),
                                                       vplUnitFloat(r->v[3]));

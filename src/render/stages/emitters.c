@@ -83,13 +83,14 @@ void vplDestroyEmitterMaps(void* result)
     }
 }
 
-// ---- area lights
+// ---- area lights and the environment
 
 vplResult vplMakeAreaLights(const vplRun* run, void** resultOut)
 {
-    const int count = run->plan->options.lights.areaLightSamples;
+    const vplLightOptions* o = &run->plan->options.lights;
+    const int count = o->areaLightSamples, skyCount = run->plan->hasSky ? o->skySamples : 0;
     vplAreaLights* area = vplArena_AllocZero(run->arena, 1, sizeof *area);
-    vplShadeLight* lights = vplArena_Alloc(run->arena, (size_t)count, sizeof *lights);
+    vplShadeLight* lights = vplArena_Alloc(run->arena, (size_t)count + (size_t)skyCount, sizeof *lights);
     vplEmission* emission;
     TRY(vplArena_Check(run->arena));
     TRY(vplEmission_Create(run->results[VPL_STAGE_GEOMETRY], NULL, 0, &emission));
@@ -97,6 +98,8 @@ vplResult vplMakeAreaLights(const vplRun* run, void** resultOut)
         area->lights = lights;
         area->count = vplSampleAreaLights(emission, count, lights);
         area->minDistance = (float)(0.5 * sqrt(vplEmission_Area(emission) / count / VPL_PI));
+        area->skyCount = skyCount > 0 ? vplSampleSky(emission, skyCount, lights + area->count) : 0;
+        area->count += area->skyCount;
     }
     vplEmission_Destroy(emission);
     *resultOut = area;

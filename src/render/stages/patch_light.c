@@ -107,10 +107,14 @@ static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* lig
     vplRgb* irradiance = vplArena_Alloc(run->scratch, points, sizeof *irradiance);
     TRY(vplArena_Check(run->scratch));
     *chunk = (Chunk){.points = places, .irradiance = irradiance, .light = light};
+    const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
+    const int sky = area != NULL ? area->skyCount : 0; // area lights are patches that emit
     const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                              .emitters = run->plan->emitters,
                              .shadows = shadows,
-                             .emitterCount = emitterCount};
+                             .emitterCount = emitterCount,
+                             .areaLights = sky > 0 ? area->lights + (area->count - sky) : NULL,
+                             .areaLightCount = sky};
     for (int first = 0; first < sideCount; first += CHUNK_SIDES) {
         const int left = sideCount - first;
         TRY(lightChunk(run, &def, first, left < CHUNK_SIDES ? left : CHUNK_SIDES, chunk));

@@ -76,6 +76,9 @@ static vplResult refine(vplRunner* draft, vplPatches* patches, int count, vplPat
 {
     draft->run.results[VPL_STAGE_PATCHES] = patches;
     draft->stageTo = 0;
+    if (draft->run.plan->hasSky) { // whose light patches receive
+        TRY(vplRunner_RunStage(draft, VPL_STAGE_AREA_LIGHTS));
+    }
     for (int i = 0; i < DRAFT_STAGE_COUNT; i++) {
         TRY(vplRunner_RunStage(draft, DRAFT_STAGES[i]));
     }

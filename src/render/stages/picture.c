@@ -30,6 +30,24 @@ static vplResult drawPatches(const vplRun* run, const vplView* view, vplImage* i
     return result;
 }
 
+// Adds what is seen of the environment behind all surfaces.
+static vplResult addBackground(const vplRun* run, const vplView* view, const vplShadeDef* shown,
+                               vplImage* image)
+{
+    const bool smooth =
+        shown->accumulation >= VPL_ACCUMULATE_DEFERRED; // passes draw surfaces without smooth edges
+    const vplShadeDef def = {
+        .lighting = shown->lighting, .output = VPL_OUTPUT_BACKGROUND, .samples = smooth ? shown->samples : 0};
+    vplImage* background;
+    TRY(vplImage_Create(run->context, image->width, image->height, &background));
+    const vplResult result = vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, &def, background, NULL);
+    for (size_t k = 0; k < vplValueCount(image) && result == VPL_SUCCESS; k++) {
+        image->pixels[k] += background->pixels[k];
+    }
+    vplImage_Destroy(background);
+    return result;
+}
+
 static vplResult shadeView(const vplRun* run, const vplView* view, const vplShadeDef* def, vplImage* image)
 {
     const bool patches =
@@ -42,6 +60,10 @@ static vplResult shadeView(const vplRun* run, const vplView* view, const vplShad
     }
     vplRun_AddRaster(run, &stats.raster);
     run->stats->rays += stats.shadowRays;
+    const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
+    if (g->environment != NULL && def->emission && def->output == VPL_OUTPUT_RADIANCE) {
+        TRY(addBackground(run, view, def, image));
+    }
     run->stats->lightEvaluations += stats.lightEvaluations;
     run->stats->cutPixels += stats.cutPixels;
     if (stats.largestCut > run->stats->largestCut) {

@@ -16,10 +16,11 @@ typedef struct vplEmitterMaps {
     int count;
 } vplEmitterMaps;
 
-// VPL_STAGE_AREA_LIGHTS: points that stand for all area lights in direct light.
+// VPL_STAGE_AREA_LIGHTS: points that stand for all area lights in direct light, then for the environment.
 typedef struct vplAreaLights {
     vplShadeLight* lights;
     int count;
+    int skyCount;      // the last of them
     float minDistance; // metres
 } vplAreaLights;
 

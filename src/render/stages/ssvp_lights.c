@@ -74,7 +74,7 @@ static vplResult followUse(const vplRun* run, const vplLightSet* set, int count,
 
 // ---- the first bounce
 
-// Gives area lights the share of the first-bounce lights that they have of the power.
+// Gives area lights and the environment the share of the first-bounce lights that they have of the power.
 static vplResult countAreaLightSamples(const vplRun* run, int count, int* countOut)
 {
     vplEmission* emission;
@@ -84,6 +84,7 @@ static vplResult countAreaLightSamples(const vplRun* run, int count, int* countO
     for (int i = emission->firstTriangle; i < emission->sourceCount; i++) {
         area += vplRgbMean(emission->sources[i].power);
     }
+    area += emission->environment >= 0 ? vplRgbMean(emission->sources[emission->environment].power) : 0;
     const double all = vplEmission_Power(emission);
     *countOut = all > 0 ? (int)rint(count * (area / all)) : 0;
     vplEmission_Destroy(emission);
