@@ -38,8 +38,8 @@ static void judge(Count* c, const vplLinkPair* pair)
         }
         return;
     }
-    vplSampleNode(&c->work, pair->p, pair->p, VPL_JUDGE_POINTS, c->work.points[pair->p]);
-    vplSampleNode(&c->work, pair->q, pair->q, VPL_JUDGE_POINTS, c->work.points[pair->q]);
+    vplLinkPoints_Draw(&c->work, pair->p);
+    vplLinkPoints_Draw(&c->work, pair->q);
     const vplLinkAnswer answer = vplJudgePair(&c->work, pair);
     c->links += answer.verdict == VPL_LINK_KEEP ? c->weight : 0;
     for (int k = 0; k < 2; k++) {
@@ -99,7 +99,7 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
     const double count = sides->count, nodes = 2 * count, batch = fmin(c.widest, VPL_LINK_BATCH);
     const double list = 1.2 * c.links * sizeof(vplLink); // it grows by half
     const double sorted =
-        2 * c.links * (sizeof *tree.senders + sizeof *tree.factors) + nodes * sizeof *tree.firstOf;
+        2 * c.links * sizeof *tree.ends + nodes * sizeof *tree.firstOf;
     *heldOut = nodes * sizeof *tree.nodes +
                count * (sizeof *tree.order + sizeof *tree.areaUpTo + 2 * sizeof *tree.scale) + sorted;
     // While the list grows, the old one is held, too. The stack has room for all parts of a batch.

@@ -79,7 +79,7 @@ static vplResult finishBatch(Refinement* r, vplLinkList* list, double* done)
         }
         *done += (double)pair->weight;
         if (answer->verdict == VPL_LINK_KEEP) {
-            list->links[list->count++] = (vplLink){pair->p, pair->q, answer->mean};
+            list->links[list->count++] = (vplLink){pair->p, pair->q, answer->fit};
         }
     }
     return VPL_SUCCESS;
@@ -90,7 +90,7 @@ static void drawPointsTask(void* data, int task, int worker)
     (void)worker;
     const vplLinkWork* work = &((const Refinement*)data)->work;
     for (int node = task * TASK; node < vplMini((task + 1) * TASK, work->tree->nodeCount); node++) {
-        vplSampleNode(work, node, node, VPL_JUDGE_POINTS, work->points[node]);
+        vplLinkPoints_Draw(work, node);
     }
 }
 
