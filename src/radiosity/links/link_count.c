@@ -23,9 +23,10 @@ typedef struct Count {
 } Count;
 
 // Every pair has at most three parts.
-static void push(Count* c, int p, int q, bool visible)
+static void push(Count* c, int p, int q, const vplLinkAnswer* answer)
 {
-    c->parts[c->partCount++] = (vplLinkPair){.p = p, .q = q, .visible = visible};
+    c->parts[c->partCount++] =
+        (vplLinkPair){.p = p, .q = q, .visible = answer->visible, .clear = answer->clear};
 }
 
 // Judges a pair of this level.
@@ -34,7 +35,7 @@ static void judge(Count* c, const vplLinkPair* pair)
     const vplLinkNode *nodes = c->work.tree->nodes, *p = &nodes[pair->p], *q = &nodes[pair->q];
     if (pair->p == pair->q) {
         for (int k = 0; k < 3 && !p->flat; k++) {
-            push(c, p->children + k % 2, p->children + (k + 1) / 2, false);
+            push(c, p->children + k % 2, p->children + (k + 1) / 2, &(vplLinkAnswer){.visible = false});
         }
         return;
     }
@@ -44,9 +45,9 @@ static void judge(Count* c, const vplLinkPair* pair)
     c->links += answer.verdict == VPL_LINK_KEEP ? c->weight : 0;
     for (int k = 0; k < 2; k++) {
         if (answer.verdict == VPL_LINK_DIVIDE_P) {
-            push(c, p->children + k, pair->q, answer.visible);
+            push(c, p->children + k, pair->q, &answer);
         } else if (answer.verdict == VPL_LINK_DIVIDE_Q) {
-            push(c, pair->p, q->children + k, answer.visible);
+            push(c, pair->p, q->children + k, &answer);
         }
     }
 }

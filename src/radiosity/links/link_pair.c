@@ -5,6 +5,7 @@
 // points of either group.
 #include "math/vec.h"
 #include "radiosity/factors/form_factors.h"
+#include "radiosity/factors/shaft.h"
 #include "radiosity/links/links.h"
 
 #include <math.h>
@@ -24,9 +25,6 @@ static const double HIDDEN = 4;
 // The fraction of a pair's bound, beyond the estimate, that counts as an error, since points miss peaks. With
 // 0 there are 0.7 times as many links, whose error is 1.1 times as large (bench/links).
 static const double PEAK = 0.05;
-
-// Rays of a pair of groups. Where some are blocked, all pairs of points are joined.
-enum { FEW_RAYS = VPL_RAY_PACKET };
 
 // The pair that is judged.
 typedef struct Pair {
@@ -222,6 +220,28 @@ static unsigned startOf(int32_t p, int32_t q)
     return mixed >> 26;
 }
 
+static vplShaftEnd endOf(const Pair* pair, const vplLinkNode* node)
+{
+    const vplPatchSide* side = firstSide(pair, node);
+    return (vplShaftEnd){.low = {node->low.x, node->low.y, node->low.z},
+                         .high = {node->high.x, node->high.y, node->high.z},
+                         .flat = node->flat,
+                         .normal = side->normal,
+                         .at = side->corners[0]};
+}
+
+// Tests whether nothing is between the nodes, and remembers it for their parts.
+static bool isClear(const Pair* pair)
+{
+    if (!pair->answer->clear) {
+        const vplShaftEnd p = endOf(pair, pair->p), q = endOf(pair, pair->q);
+        const float largest = fmaxf(fmaxf(vplLargestOf(pair->p->low), vplLargestOf(pair->p->high)),
+                                    fmaxf(vplLargestOf(pair->q->low), vplLargestOf(pair->q->high)));
+        pair->answer->clear = vplShaft_IsClear(pair->work->sides->patches->geometry, &p, &q, largest * 0x1p-21f);
+    }
+    return pair->answer->clear;
+}
+
 // Casts rays number `from` to `to` - 1.
 static void cast(const Pair* pair, const vplLinkTerms* terms, int from, int to, vplLinkSeen* seen)
 {
@@ -237,13 +257,14 @@ static void cast(const Pair* pair, const vplLinkTerms* terms, int from, int to, 
 static void measureSides(const Pair* pair, const vplLinkTerms* terms)
 {
     vplLinkSeen seen = {.open = 0};
-    cast(pair, terms, 0, pair->work->def->samples, &seen);
+    const bool clear = isClear(pair);
+    cast(pair, terms, 0, clear ? 0 : pair->work->def->samples, &seen);
     Measure m = measureOf(pair, terms);
     // Neighbours on a curved surface are near, but exchange next to nothing.
     if (isNear(pair) && pair->sent * m.mean > TINY * pair->work->def->error) {
         m.mean = (double)vplSideExchange(firstSide(pair, pair->p), firstSide(pair, pair->q));
     }
-    m.mean *= seen.open > 0 ? seen.visible / seen.open : 0;
+    m.mean *= clear ? 1 : seen.open > 0 ? seen.visible / seen.open : 0;
     keep(pair, &m);
 }
 
@@ -272,15 +293,18 @@ static void measureGroups(const Pair* pair, double bound, vplLinkTerms* terms)
         answer->verdict = divideWorse(pair, m.errorP, m.errorQ);
         return;
     }
-    vplLinkSeen seen = {.open = 0};
-    cast(pair, terms, 0, FEW_RAYS, &seen);
-    if (seen.visible < seen.open) {
-        cast(pair, terms, FEW_RAYS, VPL_MOST_LINK_RAYS, &seen);
-        vplDarkenTerms(&seen, terms);
-        m = measureOf(pair, terms);
-        findErrors(pair, &m);
+    if (isClear(pair)) {
+        answer->visible = true;
+    } else {
+        vplLinkSeen seen = {.open = 0};
+        cast(pair, terms, 0, VPL_MOST_LINK_RAYS, &seen);
+        if (seen.visible < seen.open) {
+            vplDarkenTerms(&seen, terms);
+            m = measureOf(pair, terms);
+            findErrors(pair, &m);
+        }
+        answer->visible = seen.visible > 0;
     }
-    answer->visible = seen.visible > 0;
     if (!answer->visible && open <= HIDDEN * allowed) {
         answer->verdict = VPL_LINK_NONE;
     } else if (rough || m.errorP + m.errorQ > allowed) {
@@ -292,7 +316,7 @@ static void measureGroups(const Pair* pair, double bound, vplLinkTerms* terms)
 
 vplLinkAnswer vplJudgePair(const vplLinkWork* work, const vplLinkPair* ids)
 {
-    vplLinkAnswer answer = {.verdict = VPL_LINK_NONE, .visible = ids->visible};
+    vplLinkAnswer answer = {.verdict = VPL_LINK_NONE, .visible = ids->visible, .clear = ids->clear};
     const vplLinkNode *p = &work->tree->nodes[ids->p], *q = &work->tree->nodes[ids->q];
     const Pair pair = {
         .work = work, .ids = ids, .p = p, .q = q, .sent = fmax(sentArea(p), sentArea(q)), .answer = &answer};

@@ -38,10 +38,14 @@ static void judgeTask(void* data, int task, int worker)
 }
 
 // Pushes a part of a pair that was divided. `share`: of the pair's work.
-static void push(Refinement* r, int p, int q, const vplLinkPair* pair, bool visible, float share)
+static void push(Refinement* r, int p, int q, const vplLinkPair* pair, const vplLinkAnswer* answer,
+                 float share)
 {
-    r->pairs[r->pairCount++] =
-        (vplLinkPair){.p = p, .q = q, .visible = visible, .weight = share * pair->weight};
+    r->pairs[r->pairCount++] = (vplLinkPair){.p = p,
+                                             .q = q,
+                                             .visible = answer->visible,
+                                             .clear = answer->clear,
+                                             .weight = share * pair->weight};
 }
 
 static void divide(Refinement* r, const vplLinkPair* pair, const vplLinkAnswer* answer)
@@ -49,15 +53,15 @@ static void divide(Refinement* r, const vplLinkPair* pair, const vplLinkAnswer* 
     const vplLinkNode* nodes = r->work.tree->nodes;
     if (pair->p == pair->q) {
         const int child = nodes[pair->p].children;
-        push(r, child, child, pair, answer->visible, 0.25f);
-        push(r, child + 1, child + 1, pair, answer->visible, 0.25f);
-        push(r, child, child + 1, pair, answer->visible, 0.5f);
+        push(r, child, child, pair, answer, 0.25f);
+        push(r, child + 1, child + 1, pair, answer, 0.25f);
+        push(r, child, child + 1, pair, answer, 0.5f);
         return;
     }
     for (int k = 0; k < 2; k++) {
         const bool first = answer->verdict == VPL_LINK_DIVIDE_P;
         push(r, first ? nodes[pair->p].children + k : pair->p, first ? pair->q : nodes[pair->q].children + k,
-             pair, answer->visible, 0.5f);
+             pair, answer, 0.5f);
     }
 }
 

@@ -117,6 +117,7 @@ typedef struct vplLinkPair {
     // Some ray between their parents was not blocked. If form factors vary too much over such a pair, it is
     // divided without further rays.
     bool visible;
+    bool clear;   // nothing is between their parents
     float weight; // the fraction of all work, for the progress; halved by each division
 } vplLinkPair;
 
@@ -129,7 +130,7 @@ typedef enum vplLinkVerdict {
 
 typedef struct vplLinkAnswer {
     vplLinkVerdict verdict;
-    bool visible;
+    bool visible, clear;
     vplLinkFit fit; // if kept
     int rays;
 } vplLinkAnswer;
