@@ -221,14 +221,54 @@ TEST(IrradianceIsThatOfAllPairsToTheErrorAskedFor, 2, SLOW)
 {
     Room room;
     openRoom(&room, boxInRoom(context), 1000);
-    // Measured: 0.012; with error 0.02 0.032, and 0.0094 with 20 times the links.
-    assert_true(errorOf(&room, vplDefaultLinkDef().error) < 0.016);
+    const double fine = errorOf(&room, vplDefaultLinkDef().error);
+    const int64_t many = room.links->linkCount;
     vplLinks_Destroy(room.links);
-    const double coarse = errorOf(&room, 0.02);
-    const int64_t few = room.links->linkCount;
-    vplLinks_Destroy(room.links);
-    const double fine = errorOf(&room, 0.0005);
-    assert_true(fine < 0.5 * coarse && room.links->linkCount > 4 * few);
+    const double coarse = errorOf(&room, 0.004);
+    print_message("fine %g coarse %g %lld %lld\n", fine, coarse, (long long)many, (long long)room.links->linkCount);
+    assert_true(fine < 0.006 && fine < 0.5 * coarse && many > 4 * room.links->linkCount);
+    closeRoom(&room);
+}
+
+// A floor under a distant square: light over it is smooth, though the links' receivers are groups of patches.
+TEST(LightOverAGroupHasASlope, 2)
+{
+    Room room;
+    vplScene* scene = sceneOf(context, 0.5f);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -VPL_PI / 2, 0, vplVec(4, 4, 1));
+    addThing(scene, VPL_OBJECT_QUAD, addMaterial(scene, (vplRgb){0, 0, 0}, 1), vplVec(3, 4, 0), VPL_PI / 2, 0,
+             vplVec(1, 1, 1));
+    openRoom(&room, scene, 2000);
+    vplLinkDef def = vplDefaultLinkDef();
+    def.rowSums = VPL_ROW_SUMS_KEEP;
+    linkRoom(&room, &def);
+    vplRgb* b = evenLight(&room);
+    for (int i = 0; i < room.sides->count; i++) {
+        b[i].r = room.sides->sides[i].normal.y < 0 ? 1 : 0;
+    }
+    vplRgb* e = gather(&room, NULL, b);
+    const float y = 4, low = -0.5f, high = 0.5f;
+    const vplVec3 halves[2][3] = {{{3 + low, y, low}, {3 + high, y, low}, {3 + high, y, high}},
+                                  {{3 + low, y, low}, {3 + high, y, high}, {3 + low, y, high}}};
+    double worst = 0, most = 0, least = INFINITY;
+    for (int i = 0; i < room.sides->count; i++) {
+        const vplPatchSide* s = &room.sides->sides[i];
+        if (s->normal.y > 0) {
+            const vplVec3 at =
+                vplScale(1.0f / 3, vplAdd(s->corners[0], vplAdd(s->corners[1], s->corners[2])));
+            const double wanted =
+                vplPointFormFactor(at, s->normal, halves[0]) + vplPointFormFactor(at, s->normal, halves[1]);
+            worst = fmax(worst, fabs((double)e[i].r - wanted) / wanted);
+            most = fmax(most, wanted);
+            least = fmin(least, wanted);
+        }
+    }
+    // The light falls to a third over the floor. Without slopes, as many links err by a quarter of it.
+    print_message("links %lld worst %g range %g %g\n", (long long)room.links->linkCount, worst, least, most);
+    assert_true(most > 2.5 * least && worst < 0.02);
+    assert_true(room.links->linkCount < room.sides->count);
+    free(b);
+    free(e);
     closeRoom(&room);
 }
 
@@ -299,11 +339,11 @@ TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
         openRoom(&room, boxInRoom(context), k ? 8000 : 1000);
         const size_t before = vplContext_GetBytes(context);
         linkRoom(&room, &def);
-        sides[k] = room.sides->count;
+        sides[k] = room.sides->count;print_message("%d links %lld rays %lld bytes %lld\n",sides[k],(long long)room.links->linkCount,(long long)room.links->rays,(long long)(vplContext_GetBytes(context)-before));
         links[k] = room.links->linkCount;
         rays[k] = room.links->rays;
         assert_int_equal(room.links->groupCount, sides[k] - 1);
-        assert_true(vplContext_GetBytes(context) - before < 1000 * (size_t)sides[k]);
+        assert_true(vplContext_GetBytes(context) - before < 10000 * (size_t)sides[k]);
         closeRoom(&room);
     }
     // Measured: 3.4 times the links and 3.9 times the rays, of which 32 per side are the side's own.

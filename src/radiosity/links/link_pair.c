@@ -3,6 +3,7 @@
 // Based on: Hanrahan, Salzman and Aupperle, A Rapid Hierarchical Radiosity Algorithm, SIGGRAPH 1991. Departs:
 // the error of a link is not bounded by its size but measured, as the spread of cos cos V / (pi r^2) between
 // points of either group.
+#include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/factors/shaft.h"
@@ -258,7 +259,7 @@ static void measureSides(const Pair* pair, const vplLinkTerms* terms)
 {
     vplLinkSeen seen = {.open = 0};
     const bool clear = isClear(pair);
-    cast(pair, terms, 0, clear ? 0 : pair->work->def->samples, &seen);
+    cast(pair, terms, 0, clear ? 0 : vplMini(pair->work->def->samples, VPL_MOST_LINK_RAYS), &seen);
     Measure m = measureOf(pair, terms);
     // Neighbours on a curved surface are near, but exchange next to nothing.
     if (isNear(pair) && pair->sent * m.mean > TINY * pair->work->def->error) {
@@ -286,7 +287,7 @@ static void measureGroups(const Pair* pair, double bound, vplLinkTerms* terms)
     const double open = pair->sent * m.mean;
     const bool rough = m.errorP + m.errorQ > allowed || PEAK * (bound - open) > allowed;
     if (!(open > 0)) {
-        answer->verdict = bound <= allowed ? VPL_LINK_NONE : divideLarger(pair);
+        answer->verdict = bound <= TINY * allowed ? VPL_LINK_NONE : divideLarger(pair);
         return;
     }
     if (answer->visible && rough) {

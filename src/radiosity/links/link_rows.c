@@ -20,6 +20,8 @@ enum {
 // Leaves room for the rounding of scales and sums, so that no sum ends above 1.
 static const double MARGIN = 1 - 0x1p-21;
 
+static const double CLOSED = 0.97;
+
 // ---- enclosed sides: their form factors sum to 1
 
 typedef struct EnclosedTest {
@@ -91,7 +93,7 @@ static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, co
     }
 }
 
-static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, const bool* enclosed, float* rowSums)
+static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, bool usual, bool* enclosed, float* rowSums)
 {
     const int count = links->sideCount, rounds = keep ? 0 : ROUNDS;
     vplPlanes ones = vplPlanes_Alloc(scratch, count);
@@ -106,6 +108,7 @@ static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, const bo
         TRY(vplLinks_Gather(links, &ones, &nodes, sums));
         for (int i = 0; i < count && round == 0; i++) {
             rowSums[i] = (float)sums[i][0];
+            enclosed[i] = enclosed[i] && (!usual || sums[i][0] >= CLOSED);
         }
         if (rounds > 0) {
             fitScales(links->tree, sums, count, enclosed, round == rounds);
@@ -125,7 +128,7 @@ static vplResult findAndFit(vplLinks* links, EnclosedTest* test, vplArena* scrat
     if (rows == VPL_ROW_SUMS_USUAL) {
         TRY(findEnclosed(test, scratch, &links->rays));
     }
-    return fitRows(links, scratch, rows == VPL_ROW_SUMS_KEEP, test->enclosed, rowSums);
+    return fitRows(links, scratch, rows == VPL_ROW_SUMS_KEEP, rows == VPL_ROW_SUMS_USUAL, test->enclosed, rowSums);
 }
 
 vplResult vplLinks_FitRows(vplLinks* links, const vplPatchSides* sides, const vplLinkDef* def,

@@ -2,11 +2,11 @@
 // The hierarchy as its callers see it.
 #include "radiosity/links/links.h"
 
-enum { LINK_COOKIE = 0x56504cb4, MOST_SAMPLES = VPL_MOST_LINK_RAYS };
+enum { LINK_COOKIE = 0x56504cb4, MOST_SAMPLES = 1024 };
 
 vplLinkDef vplDefaultLinkDef(void)
 {
-    return (vplLinkDef){.error = 0.001, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
+    return (vplLinkDef){.error = 0.00025, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
 }
 
 static vplResult checkDef(const vplPatchSides* sides, const vplLinkDef* def)
