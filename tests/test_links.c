@@ -225,8 +225,8 @@ TEST(IrradianceIsThatOfAllPairsToTheErrorAskedFor, 2, SLOW)
     const int64_t many = room.links->linkCount;
     vplLinks_Destroy(room.links);
     const double coarse = errorOf(&room, 0.004);
-    print_message("fine %g coarse %g %lld %lld\n", fine, coarse, (long long)many, (long long)room.links->linkCount);
-    assert_true(fine < 0.006 && fine < 0.5 * coarse && many > 4 * room.links->linkCount);
+    // Measured: 0.0045 and 0.0091, a part of which are rays between sides.
+    assert_true(fine < 0.006 && fine < 0.6 * coarse && many > 4 * room.links->linkCount);
     closeRoom(&room);
 }
 
@@ -263,10 +263,9 @@ TEST(LightOverAGroupHasASlope, 2)
             least = fmin(least, wanted);
         }
     }
-    // The light falls to a third over the floor. Without slopes, as many links err by a quarter of it.
-    print_message("links %lld worst %g range %g %g\n", (long long)room.links->linkCount, worst, least, most);
-    assert_true(most > 2.5 * least && worst < 0.02);
-    assert_true(room.links->linkCount < room.sides->count);
+    // Measured: 0.017 at the darkest corner with 556 links for 2,000 patches, over which light varies by 6.5.
+    assert_true(most > 5 * least && worst < 0.025);
+    assert_true(room.links->linkCount < room.sides->count / 2);
     free(b);
     free(e);
     closeRoom(&room);
@@ -339,14 +338,15 @@ TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
         openRoom(&room, boxInRoom(context), k ? 8000 : 1000);
         const size_t before = vplContext_GetBytes(context);
         linkRoom(&room, &def);
-        sides[k] = room.sides->count;print_message("%d links %lld rays %lld bytes %lld\n",sides[k],(long long)room.links->linkCount,(long long)room.links->rays,(long long)(vplContext_GetBytes(context)-before));
+        sides[k] = room.sides->count;
         links[k] = room.links->linkCount;
         rays[k] = room.links->rays;
         assert_int_equal(room.links->groupCount, sides[k] - 1);
         assert_true(vplContext_GetBytes(context) - before < 10000 * (size_t)sides[k]);
         closeRoom(&room);
     }
-    // Measured: 3.4 times the links and 3.9 times the rays, of which 32 per side are the side's own.
+    // Measured: 3.2 times the links and 2.3 times the rays, of which 32 per side are the side's own; 8.7 and 3.7 kB
+    // per side.
     assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 5 * rays[0]);
 }
 

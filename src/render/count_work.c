@@ -228,7 +228,7 @@ static vplWork workOf(const Scale* s, vplStageId id)
         break;
     case VPL_STAGE_FORM_FACTORS:
         w.counts[FORM_FACTOR] =
-            p->linked ? 4000 * s->sides
+            p->linked ? 20000 * s->sides
                       : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) * s->depth;
         break;
     case VPL_STAGE_PATCH_LIGHT:

@@ -20,6 +20,8 @@ enum {
 // Leaves room for the rounding of scales and sums, so that no sum ends above 1.
 static const double MARGIN = 1 - 0x1p-21;
 
+// Sides whose form factors sum to less are not enclosed, even if rays missed the opening: links of closed rooms
+// err by less. Without, cornell-area's error is 1.1 times as large (4,000 patches).
 static const double CLOSED = 0.97;
 
 // ---- enclosed sides: their form factors sum to 1
