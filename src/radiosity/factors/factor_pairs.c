@@ -75,7 +75,7 @@ static void estimateRow(Tile* tile, int i)
     for (uint32_t left = tile->pairs[i] & estimate.near; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
         tile->exact[i][l] = vplSideExchange(&work->sides->sides[tile->row * LANES + i],
-                                      &work->sides->sides[tile->column * LANES + l]);
+                                            &work->sides->sides[tile->column * LANES + l]);
         tile->analyticPairs++;
     }
     for (uint32_t left = tile->pairs[i]; left != 0; left &= left - 1) {

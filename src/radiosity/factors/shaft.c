@@ -18,8 +18,8 @@ typedef struct ShaftPlane {
 // The space between two blocks, or two ends: inside the bounds of both, and behind all planes.
 typedef struct Shaft {
     const vplGeometry* geometry;
-    const vplFactorBlock *a, *b;   // NULL: two ends
-    const vplShaftEnd* ends[2];    // NULL: two blocks
+    const vplFactorBlock *a, *b; // NULL: two ends
+    const vplShaftEnd* ends[2];  // NULL: two blocks
     const float *lows[2], *highs[2];
     float tolerance;
     float low[3], high[3];
@@ -31,8 +31,8 @@ typedef struct Shaft {
 // Adds the plane through the same corner of both boxes, if both lie behind it.
 static void addPlane(Shaft* shaft, int u, int v, int corner)
 {
-    const float *const *us = corner & 1 ? shaft->highs : shaft->lows,
-                       *const *vs = corner & 2 ? shaft->highs : shaft->lows;
+    const float *const *us = corner & 1 ? shaft->highs : shaft->lows, *const *vs = corner & 2 ? shaft->highs
+                                                                                              : shaft->lows;
     const double au = (double)us[0][u], av = (double)vs[0][v];
     const double du = (double)us[1][u] - au, dv = (double)vs[1][v] - av;
     const double outU = corner & 1 ? 1 : -1, outV = corner & 2 ? 1 : -1;

@@ -99,8 +99,7 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
     vplArena_Destroy(scratch);
     const double count = sides->count, nodes = 2 * count, batch = fmin(c.widest, VPL_LINK_BATCH);
     const double list = 1.2 * c.links * sizeof(vplLink); // it grows by half
-    const double sorted =
-        2 * c.links * sizeof *tree.ends + nodes * sizeof *tree.firstOf;
+    const double sorted = 2 * c.links * sizeof *tree.ends + nodes * sizeof *tree.firstOf;
     *heldOut = nodes * sizeof *tree.nodes +
                count * (sizeof *tree.order + sizeof *tree.areaUpTo + 2 * sizeof *tree.scale) + sorted;
     // While the list grows, the old one is held, too. The stack has room for all parts of a batch.

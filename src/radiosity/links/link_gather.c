@@ -37,7 +37,7 @@ static void receiveTask(void* data, int task, int worker)
             const float(*sent)[4] = g->scratch->sent[end->sender];
             for (int c = 0; c < 3; c++) {
                 sum[0][c] += (double)(end->factor * sent[0][c] + end->senderSlope[0] * sent[1][c] +
-                             end->senderSlope[1] * sent[2][c] + end->senderSlope[2] * sent[3][c]);
+                                      end->senderSlope[1] * sent[2][c] + end->senderSlope[2] * sent[3][c]);
                 for (int axis = 0; axis < 3; axis++) {
                     sum[1 + axis][c] += (double)end->receiverSlope[axis] * (double)sent[0][c];
                 }
@@ -51,8 +51,7 @@ static void receiveTask(void* data, int task, int worker)
 static void stepTo(const vplLinkNode* n, const vplLinkNode* child, double step[3])
 {
     for (int axis = 0; axis < 3; axis++) {
-        const double way =
-            (double)vplComponent(child->middle, axis) - (double)vplComponent(n->middle, axis);
+        const double way = (double)vplComponent(child->middle, axis) - (double)vplComponent(n->middle, axis);
         step[axis] = n->radius > 0 ? way / (double)n->radius : 0;
     }
 }

@@ -118,8 +118,8 @@ static double factorBound(const Pair* pair)
 
 // The exchange of two nodes as a linear function, and its error.
 typedef struct Measure {
-    double mean, p[3], q[3];  // as in vplLinkFit
-    double errorP, errorQ;    // standard deviation of means over q at points of p, and the other way round
+    double mean, p[3], q[3]; // as in vplLinkFit
+    double errorP, errorQ;   // standard deviation of means over q at points of p, and the other way round
 } Measure;
 
 // Fits a linear function to values at points. Returns the standard deviation from it.
@@ -239,7 +239,8 @@ static bool isClear(const Pair* pair)
         const vplShaftEnd p = endOf(pair, pair->p), q = endOf(pair, pair->q);
         const float largest = fmaxf(fmaxf(vplLargestOf(pair->p->low), vplLargestOf(pair->p->high)),
                                     fmaxf(vplLargestOf(pair->q->low), vplLargestOf(pair->q->high)));
-        pair->answer->clear = vplShaft_IsClear(pair->work->sides->patches->geometry, &p, &q, largest * 0x1p-21f);
+        pair->answer->clear =
+            vplShaft_IsClear(pair->work->sides->patches->geometry, &p, &q, largest * 0x1p-21f);
     }
     return pair->answer->clear;
 }

@@ -37,7 +37,8 @@ static void drawPoints(const vplLinkWork* work, int node, vplLinkPoints* out)
     const float scale = n->radius > 0 ? 1 / n->radius : 0;
     for (int k = 0; k < POINTS; k++) {
         const vplRandom4 random = vplRandomAt(work->def->seed, STREAM + (uint32_t)k, (uint64_t)node);
-        const double target = from + (to - from) * ((k + 0.25 + 0.5 * (double)vplUnitFloat(random.v[0])) / POINTS);
+        const double target =
+            from + (to - from) * ((k + 0.25 + 0.5 * (double)vplUnitFloat(random.v[0])) / POINTS);
         const int position = findSide(tree, n, target);
         const vplPatchSide* side = &work->sides->sides[tree->order[position]];
         // Beside a large sum, the summed areas of tiny sides may differ by more than the area, or not at all.
@@ -129,7 +130,8 @@ static int fromPoint(const vplLinkSight* sight, int ray)
 static int toPoint(const vplLinkSight* sight, int ray)
 {
     const unsigned turn = (unsigned)(ray / POINTS);
-    return (int)((3 * (unsigned)fromPoint(sight, ray) + 4 * turn + turn / 2 + sight->start / POINTS) % POINTS);
+    return (int)((3 * (unsigned)fromPoint(sight, ray) + 4 * turn + turn / 2 + sight->start / POINTS) %
+                 POINTS);
 }
 
 // Joins sixteen pairs of points, or those up to sight->to.

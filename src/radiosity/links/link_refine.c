@@ -41,11 +41,8 @@ static void judgeTask(void* data, int task, int worker)
 static void push(Refinement* r, int p, int q, const vplLinkPair* pair, const vplLinkAnswer* answer,
                  float share)
 {
-    r->pairs[r->pairCount++] = (vplLinkPair){.p = p,
-                                             .q = q,
-                                             .visible = answer->visible,
-                                             .clear = answer->clear,
-                                             .weight = share * pair->weight};
+    r->pairs[r->pairCount++] = (vplLinkPair){
+        .p = p, .q = q, .visible = answer->visible, .clear = answer->clear, .weight = share * pair->weight};
 }
 
 static void divide(Refinement* r, const vplLinkPair* pair, const vplLinkAnswer* answer)

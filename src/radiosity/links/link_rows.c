@@ -95,7 +95,8 @@ static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, co
     }
 }
 
-static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, bool usual, bool* enclosed, float* rowSums)
+static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, bool usual, bool* enclosed,
+                         float* rowSums)
 {
     const int count = links->sideCount, rounds = keep ? 0 : ROUNDS;
     vplPlanes ones = vplPlanes_Alloc(scratch, count);
@@ -130,7 +131,8 @@ static vplResult findAndFit(vplLinks* links, EnclosedTest* test, vplArena* scrat
     if (rows == VPL_ROW_SUMS_USUAL) {
         TRY(findEnclosed(test, scratch, &links->rays));
     }
-    return fitRows(links, scratch, rows == VPL_ROW_SUMS_KEEP, rows == VPL_ROW_SUMS_USUAL, test->enclosed, rowSums);
+    return fitRows(links, scratch, rows == VPL_ROW_SUMS_KEEP, rows == VPL_ROW_SUMS_USUAL, test->enclosed,
+                   rowSums);
 }
 
 vplResult vplLinks_FitRows(vplLinks* links, const vplPatchSides* sides, const vplLinkDef* def,
