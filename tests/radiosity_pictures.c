@@ -55,3 +55,15 @@ vplComparison compare(const vplImage* a, const vplImage* b)
     assert_int_equal(vplImage_Compare(a, b, &c), VPL_SUCCESS);
     return c;
 }
+
+double commonError(const vplImage* image, vplImage* const truth[2])
+{
+    double sum = 0;
+    const int count = 3 * image->width * image->height;
+    for (int i = 0; i < count; i++) {
+        const double a = (double)truth[0]->pixels[i], b = (double)truth[1]->pixels[i],
+                     x = (double)image->pixels[i];
+        sum += (x - a) * (x - b) / ((0.5 * (a + b) + 0.01) * (0.5 * (a + b) + 0.01));
+    }
+    return sum / count;
+}

@@ -21,4 +21,8 @@ vplImage* pathsOf(const vplScene* scene, vplShow show, int spp);
 
 vplComparison compare(const vplImage* a, const vplImage* b);
 
+// Returns the mean product of the errors against two truths of independent noise, in which their noise
+// cancels.
+double commonError(const vplImage* image, vplImage* const truth[2]);
+
 #endif

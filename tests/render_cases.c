@@ -33,6 +33,9 @@ static const struct {
     {CORNER, "--method radiosity --hierarchy on"},
     {CORNER, "--method radiosity --patch-placement adaptive --patches 20"},
     {CORNER, "--method radiosity --form-factors incentre --solver shooting --interpolation none"},
+    {CORNER, "--method radiosity --gather 3"},
+    {POINT, "--method radiosity --gather 2 --interleave 1 --interpolation none --supersample 2 --aov "
+            "direct,indirect"},
     {POINT, "--method auto"},
     {AREA, "--method auto --passes 1"},
 };

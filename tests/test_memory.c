@@ -164,6 +164,8 @@ static vplResult renderSsvp(Attempt* a)
     options.ssvp.clusters = 2;
     options.ssvp.firstBounce = options.ssvp.secondBounce = 6;
     options.ssvp.paraboloidSize = 4;
+    options.ssvp.nextBounce = a->variant ? VPL_NEXT_BOUNCE_MAPS : VPL_NEXT_BOUNCE_RAYS;
+    options.maxBounces = 4;
     return loadAndRender(a, "tests/data/room.json", &options);
 }
 
@@ -449,7 +451,7 @@ EVERY_FAILED_ALLOCATION(DocumentedKeller, renderDocumented, "png", 2)
 EVERY_FAILED_ALLOCATION(MeshesAreaLightsAndLightShadows, renderBall, "png", 3)
 EVERY_FAILED_ALLOCATION(Lightcuts, renderCuts, "png", 2)
 EVERY_FAILED_ALLOCATION(AShownStage, showStage, "pfm", VPL_SHOW_OVERLAY - VPL_SHOW_DEPTH + 1)
-EVERY_FAILED_ALLOCATION(Ssvp, renderSsvp, "png", 1)
+EVERY_FAILED_ALLOCATION(Ssvp, renderSsvp, "png", 2)
 EVERY_FAILED_ALLOCATION(Frames, renderSequence, "png", 1)
 EVERY_FAILED_ALLOCATION(Radiosity, renderRadiosity, "png", 3)
 EVERY_FAILED_ALLOCATION(ABake, bake, "ply", 2)

@@ -3,6 +3,7 @@
 #include "sides_cases.h"
 
 #include "geometry/triangle.h"
+#include "radiosity/sides/side.h"
 
 // ---- cells
 
@@ -40,7 +41,7 @@ TEST_ALONE(CellsTileThePatch)
         double mean[3] = {0};
         for (int i = 0; i < 32 * 32; i++) {
             const float u = ((float)(i % 32) + 0.5f) / 32, v = ((float)(i / 32) + 0.5f) / 32;
-            const vplVec3 p = vplPatchSide_SampleCell(&s, k, u, v);
+            const vplVec3 p = vplCell_Point(s.corners, k, u, v);
             assert_int_equal(findCell(s.corners, p), k);
             for (int axis = 0; axis < 3; axis++) {
                 mean[axis] += (double)vplComponent(p, axis) / 1024;
@@ -64,10 +65,10 @@ TEST_ALONE(CellsAreInTheStatedOrder)
     const vplPatchSide s = sideOf(vplVec(0, 0, 0), vplVec(4, 0, 0), vplVec(0, 4, 0));
     const float ends[2] = {0, 1 - 0x1p-24f};
     for (int i = 0; i < 4; i++) {
-        const vplVec3 first = vplPatchSide_SampleCell(&s, 0, ends[i & 1], ends[i >> 1]),
-                      second = vplPatchSide_SampleCell(&s, 5, ends[i & 1], ends[i >> 1]),
-                      third = vplPatchSide_SampleCell(&s, 10, ends[i & 1], ends[i >> 1]),
-                      middle = vplPatchSide_SampleCell(&s, 15, ends[i & 1], ends[i >> 1]);
+        const vplVec3 first = vplCell_Point(s.corners, 0, ends[i & 1], ends[i >> 1]),
+                      second = vplCell_Point(s.corners, 5, ends[i & 1], ends[i >> 1]),
+                      third = vplCell_Point(s.corners, 10, ends[i & 1], ends[i >> 1]),
+                      middle = vplCell_Point(s.corners, 15, ends[i & 1], ends[i >> 1]);
         assert_true(first.x >= 0 && first.y >= 0 && first.x + first.y <= 1);
         assert_true(second.x >= 3 && second.y >= 0 && second.x + second.y <= 4);
         assert_true(third.x >= 0 && third.y >= 3 && third.x + third.y <= 4);
@@ -84,7 +85,7 @@ static double coveredShare(const vplPatchSide* s, int cell, const vplGeometry* g
     int covered = 0;
     for (int i = 0; i < 256; i++) {
         const vplVec3 p =
-            vplPatchSide_SampleCell(s, cell, ((float)(i % 16) + 0.5f) / 16, ((float)(i / 16) + 0.5f) / 16);
+            vplCell_Point(s->corners, cell, ((float)(i % 16) + 0.5f) / 16, ((float)(i / 16) + 0.5f) / 16);
         const vplRay up = {vplVec(p.x, 1, p.z), vplVec(0, 1, 0), {0, 0}};
         vplHit hit;
         covered +=
@@ -110,7 +111,7 @@ TEST(TheReportsBoxHasItsFrontsButUnderBlocks, 2)
             continue;
         }
         vplPatchSide whole = {.patch = i};
-        vplSide_GetCorners(p, i, false, whole.corners);
+        vplPatchNode_GetCorners(p, p->patches[i], false, whole.corners);
         const unsigned open = front >= 0 ? s->sides[front].open : 0;
         bool dark = true;
         for (int k = 0; k < VPL_PATCH_CELLS; k++) {

@@ -2,6 +2,7 @@
 // Tests of adaptive patches: the priorities of vplFindPatchPriority, and the gain from refining by them.
 #include "patch_support.h"
 
+#include "radiosity/sides/side.h"
 #include "math/vec.h"
 
 #include <stdlib.h>
@@ -31,8 +32,8 @@ static double meanOver(const vplPatchSide* side, double (*at)(vplVec3))
 {
     double sum = 0;
     for (int i = 0; i < 16 * VPL_PATCH_CELLS; i++) {
-        sum += at(vplPatchSide_SampleCell(side, i / 16, ((float)(i % 4) + 0.5f) / 4,
-                                          ((float)(i / 4 % 4) + 0.5f) / 4));
+        sum += at(vplCell_Point(side->corners, i / 16, ((float)(i % 4) + 0.5f) / 4,
+                                ((float)(i / 4 % 4) + 0.5f) / 4));
     }
     return sum / (16 * VPL_PATCH_CELLS);
 }

@@ -160,7 +160,7 @@ TEST(EachMethodRunsTheStagesOfItsDocument, 1)
         "geometry, clamp distance, particles, shadow map, virtual lights, shading",
         ("geometry, reflective map, first bounce, clusters, paraboloid, second bounce, second clusters, "
          "second "
-         "paraboloid, list, area lights, virtual lights, shading"),
+         "paraboloid, further bounces, list, area lights, virtual lights, shading"),
         ("geometry, patches, reachable sides, patch mesh, form factors, patch light, solve, corners, shadow "
          "map, area lights, shading")};
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
@@ -350,7 +350,7 @@ TEST_ALONE(PeakBytesAreTrueWithin15Percent)
 // Large numbers of particles, lights, links and clusters, which small scenes hold little besides.
 TEST_ALONE(PeakBytesAreTrueWithinAQuarterForLargeCounts)
 {
-    static const char* const cases[][15] = {
+    static const char* const cases[][17] = {
         {"room-area", "method", "keller", "particles", "20000", "light-shadows", "none"},
         {"closed-room", "method", "keller", "particles", "20000", "pipeline", "deferred", "light-shadows",
          "none"},
@@ -366,7 +366,7 @@ TEST_ALONE(PeakBytesAreTrueWithinAQuarterForLargeCounts)
         {"closed-room", "method", "ssvp", "first-bounce", "50000", "rsm-size", "32"},
         {"room", "method", "ssvp", "first-bounce", "40000", "light-shadows", "none", "rsm-size", "32"},
         {"room", "method", "ssvp", "second-bounce", "20000", "paraboloid", "16", "clusters", "100",
-         "rsm-size", "32"},
+         "rsm-size", "32", "next-bounce", "maps", "max-bounces", "2"},
         {"room-area", "method", "path", "size", "120x80", "spp", "1"},
         {"room-area", "method", "direct", "size", "120x80", "supersample", "3"}};
     int wrong = 0;

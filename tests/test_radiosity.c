@@ -49,20 +49,6 @@ TEST(PicturesComeNearerToPathsAsPatchesShrink, 2, SLOW)
     }
 }
 
-// Returns the mean product of the errors against two truths of independent noise, in which their noise
-// cancels.
-static double commonError(const vplImage* image, vplImage* const truth[2])
-{
-    double sum = 0;
-    const int count = 3 * image->width * image->height;
-    for (int i = 0; i < count; i++) {
-        const double a = (double)truth[0]->pixels[i], b = (double)truth[1]->pixels[i],
-                     x = (double)image->pixels[i];
-        sum += (x - a) * (x - b) / ((0.5 * (a + b) + 0.01) * (0.5 * (a + b) + 0.01));
-    }
-    return sum / count;
-}
-
 // Measured: 0.00071 with 980 adaptive patches, 0.00092 with 1624 uniform ones (bench/radiosity_error measures
 // more, also away from edges).
 TEST(AdaptivePatchesAreBetterThanMoreUniformOnes, 2, SLOW)

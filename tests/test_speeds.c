@@ -141,7 +141,7 @@ TEST(PredictedTimeGrowsWithTheWork, 1)
                 {"instant-radiosity", "particles", "100", "10000", 2},
                 {"path", "spp", "4", "64", 8},
                 {"radiosity", "patches", "500", "4000", 8},
-                {"ssvp", "clusters", "4", "64", 1.2f},
+                {"ssvp", "max-clusters", "8", "512", 1.2f},
                 {"keller", "size", "64x36", "640x360", 10},
                 {"direct", "size", "64x36", "640x360", 10},
                 {"path", "size", "64x36", "640x360", 10},

@@ -236,6 +236,10 @@ typedef struct vplPatchDef {
     // lies on both sides of a wall, or half under a box; default false. `count` is that without cuts: many pieces are
     // slivers inside walls, which should not make the other patches coarser.
     bool cut;
+    // Make one patch of many small triangles: of those in a box whose diagonal is at most T, which face the same way and
+    // emit the same; default false. With `size` 0, T is chosen so that patches, cuts included, are about `count`. Only
+    // triangles that are in no group are cut, and by each other.
+    bool group;
     uint32_t cookie; // set by vplDefaultPatchDef
 } vplPatchDef;
 
@@ -249,7 +253,7 @@ typedef struct vplPatchNode {
     int triangle;        // of the geometry
     int parent;          // -1: the node is that triangle
     int children;        // the first of two, which follow each other; -1: a patch, or a triangle without area
-    int patch;           // index in vplPatches.patches; -1: none
+    int patch;           // index in vplPatches.patches, that of a group for each of its triangles; -1: none
     float at; // the children meet this share of the way from corner 1 to corner 2; 0.5 where bisected
 } vplPatchNode;
 
@@ -260,7 +264,10 @@ typedef struct vplPatchCut {
         faces; // bit 0: the surface stands on the triangle's front; bit 1: on its back; 0: lies in its plane
 } vplPatchCut;
 
-// Triangles bisected at their longest edges. Read only. Node t, t < geometry->triangleCount, is triangle t.
+// The least cosine between the normal of a triangle in a group and the group's mean normal: 37 degrees.
+#define VPL_PATCH_GROUP_COSINE 0.8
+
+// Triangles bisected at their longest edges, or in groups. Read only. Node t, t < geometry->triangleCount, is triangle t.
 // The middle of a shared edge has the same bits for both triangles. Triangles whose area is 0 have no patch.
 // Source: Hemgren, Radiosity in Realtime Rendering, 3.1. Edges exactly as long as T stay whole.
 typedef struct vplPatches {
@@ -269,8 +276,17 @@ typedef struct vplPatches {
     int positionCount;
     const vplPatchNode* nodes;
     int nodeCount;
-    const int* patches; // nodes that are patches: triangle by triangle, each in the order of its tree
+    // Nodes that are patches: triangle by triangle, each in the order of its tree. Then groups: the first triangle of
+    // each.
+    const int* patches;
     int patchCount;
+    // The last groupCount patches are groups of at least two whole triangles. Group i has the triangles
+    // members[firstMember[i]] .. members[firstMember[i + 1] - 1], neighbours next to each other; areaUpTo[m]: the area of
+    // the group's triangles up to and with member m, m^2. All NULL where there are no groups.
+    int groupCount;
+    const int* firstMember;
+    const int* members;
+    const double* areaUpTo;
     float longestEdge; // of all patches, metres; rounded up, so that as T it gives the same patches
     // The cuts of triangle t are cuts[firstCut[t]] .. cuts[firstCut[t + 1] - 1]. NULL: no surface meets another, or
     // vplPatchDef.cut is false.
@@ -302,6 +318,14 @@ int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position);
 
 // Area of a patch, square metres.
 double vplPatches_Area(const vplPatches* patches, int patch);
+
+// The nodes that a patch consists of: one, or the triangles of a group.
+typedef struct vplPatchParts {
+    const int* nodes;
+    int count;
+} vplPatchParts;
+
+vplPatchParts vplPatches_GetParts(const vplPatches* patches, int patch);
 
 #ifdef __cplusplus
 }

@@ -351,6 +351,34 @@ vplResult vplFindClusters(const vplLightSet* lights, const vplClusterDef* def,
 // NULL is allowed.
 void vplLightClusters_Destroy(vplLightClusters* clusters);
 
+typedef struct vplClusterSplitDef {
+    // Camera, minDistance and seed. pointCount points that the camera sees, and as many that each of them sees
+    // by one and by two reflections, tell whether lights and clusters agree; default 64.
+    vplPlacementDef view;
+    int maxCount; // clusters after splitting, [1, VPL_MAX_LIGHTS]; default 64
+    double wrong; // no cluster is split where at most this share of the light is wrong, [0, 1]; default 0.02
+    uint32_t cookie; // set by vplDefaultClusterSplitDef
+} vplClusterSplitDef;
+
+vplClusterSplitDef vplDefaultClusterSplitDef(void);
+
+// Agreement of lights with the viewpoints of their clusters: light that reaches the camera from the points, in
+// units of radiance, summed over lights and points.
+typedef struct vplClusterAgreement {
+    double light; // that arrives
+    double wrong; // that arrives although the cluster does not see the point, or that does not though it sees
+    int64_t rays;
+} vplClusterAgreement;
+
+// Splits clusters whose viewpoint (`nearest`) does not see what their lights see. While the share of the light
+// that is wrong is more than def->wrong, and there are less than def->maxCount clusters, the one with the most
+// wrong light is split: one of its lights becomes a viewpoint, and takes those lights with it that agree
+// better with it. New clusters are appended and look along their viewpoint's normal; others are copied.
+// `agreement` is that after splitting.
+vplResult vplSplitClusters(const vplGeometry* geometry, const vplLightSet* lights,
+                           const vplLightClusters* clusters, const vplClusterSplitDef* def,
+                           vplLightClusters** clustersOut, vplClusterAgreement* agreementOut);
+
 typedef enum vplSecondWeight {
     VPL_SECOND_WEIGHT_COSINE = 0, // 4 (1 - p^2) / (1 + p^2)^3: a diffuse light (default)
     VPL_SECOND_WEIGHT_PRINTED     // 1: the document gives none
@@ -360,6 +388,7 @@ typedef struct vplSecondBounceDef {
     int count;              // samples of all clusters together, [0, VPL_MAX_LIGHTS]; default 256
     vplSecondWeight weight; // default VPL_SECOND_WEIGHT_COSINE
     uint64_t shift;         // as in vplRsmSampleDef, besides a shift per cluster; default 0
+    int step;               // of the lights: 1 for the second bounce (default), k for bounce k + 1, [1, 63]
     uint32_t cookie;        // set by vplDefaultSecondBounceDef
 } vplSecondBounceDef;
 
@@ -368,11 +397,27 @@ vplSecondBounceDef vplDefaultSecondBounceDef(void);
 // Second-bounce lights: texels of each cluster's front hemisphere at points of the unit disk, evenly spread
 // (Shirley and Chiu's concentric map, as in Pharr et al.). Each carries its share of the cluster's flux,
 // times the surface's reflectance. maps->maps[i] is the map of clusters->clusters[i]; the maps must have
-// triangles. Lights are of step 1; their `particle` counts samples. The set's N is the number of samples.
-// Source: Aranha, Macedo and Apolinario, section II-B. Departs: the weight.
+// triangles. Lights are of def->step; their `particle` counts samples. The set's N is the number of samples.
+// Clusters of second-bounce lights give lights of the third bounce, and so on.
+// Source: Aranha, Macedo and Apolinario, section II-B. Departs: the weight; the document has two bounces.
 vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClusters* clusters,
                                   const vplParaboloidMaps* maps, const vplSecondBounceDef* def,
                                   vplLightSet** setOut);
+
+typedef struct vplNextBounceDef {
+    int count;       // rays, [0, VPL_MAX_LIGHTS]; default 256
+    uint64_t shift;  // 0 (default): points of the Halton sequence; else seed of a random shift, modulo 1
+    int step;        // of the lights, [1, 63]; default 1
+    uint32_t cookie; // set by vplDefaultNextBounceDef
+} vplNextBounceDef;
+
+vplNextBounceDef vplDefaultNextBounceDef(void);
+
+// Lights of the next bounce: the hits of cosine-distributed rays from the lights of a set, of which each sends
+// as many as it has of the flux. All rays carry equal light, times the reflectance of what they hit. A ray that
+// hits nothing leaves no light. Lights are of def->step; their `particle` counts rays, which are the set's N.
+vplResult vplShootNextBounce(const vplGeometry* geometry, const vplLightSet* lights,
+                             const vplNextBounceDef* def, vplLightSet** setOut);
 
 // ---- lights of kernels
 

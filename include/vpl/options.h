@@ -122,6 +122,12 @@ typedef enum vplClusterPlace {
     VPL_CLUSTER_PLACE_MEAN // the mean of its lights, as in the document: maybe in mid-air or inside an object
 } vplClusterPlace;
 
+// Source of the second-bounce lights of SSVP, and of further bounces.
+typedef enum vplNextBounce {
+    VPL_NEXT_BOUNCE_RAYS = 0, // rays from lights of the bounce before; those are kept that light what is seen
+    VPL_NEXT_BOUNCE_MAPS      // samples of the clusters' paraboloid maps, as in the document
+} vplNextBounce;
+
 // Form factors are computed for all pairs of patch sides, or for links between groups of them.
 typedef enum vplHierarchy {
     VPL_HIERARCHY_AUTO = 0, // all pairs up to VPL_ALL_PAIRS sides, else links
@@ -147,6 +153,15 @@ typedef enum vplPatchCuts {
     VPL_PATCH_CUTS_OFF, // patches may span what cuts them
     VPL_PATCH_CUTS_ON
 } vplPatchCuts;
+
+// Groups of small triangles.
+typedef enum vplPatchGroups {
+    VPL_PATCH_GROUPS_AUTO =
+        0, // on where there are more triangles than patches are asked for; off with patchSize or
+           // VPL_FORM_FACTORS_INCENTRE
+    VPL_PATCH_GROUPS_OFF, // each triangle is at least one patch
+    VPL_PATCH_GROUPS_ON
+} vplPatchGroups;
 
 // Interpolation of radiosity over a patch.
 typedef enum vplInterpolation {

@@ -74,6 +74,7 @@ typedef struct vplPlan {
     bool showsDirect;     // the picture shows emission, and light from emitters and area lights
     bool showsVirtual;    // the picture shows light from virtual lights
     bool showsPatches;    // the picture shows patches
+    bool gathers;         // rays from pixels find the light of patches
     bool
         splitsLight; // direct light is rendered a second time, alone, for layers of direct and indirect light
     bool compensates;   // short rays add the light that the clamp takes away
@@ -92,16 +93,18 @@ typedef struct vplPlan {
     vplDecision leftOut[VPL_MAX_DECISIONS];
     int leftOutCount;
 
-    int stepCount; // steps of the particle simulation; bounces of SSVP
+    double reflectance; // SSVP: mean reflectance over the area of the scene, which sets the number of bounces
+    int stepCount;      // steps of the particle simulation; bounces of SSVP
     int particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights; // upper limit per pass
     int64_t drawCalls;     // per pass
     int passes;            // that the options ask for; 0: a time or an error ends them
     int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
     int patches, patchSides;
-    double longestEdge;      // longest edge of a patch, metres
-    bool linked;             // patches exchange light by links between groups
-    int64_t formFactorBytes; // form factors of all pairs
+    int patchGroups, groupedTriangles; // patches that are groups of triangles, and the triangles in them
+    double longestEdge;                // longest edge of a patch, metres
+    bool linked;                       // patches exchange light by links between groups
+    int64_t formFactorBytes;           // form factors of all pairs
     int64_t shadowMapBytes, lightBytes, pictureBytes, layerBytes;
     int64_t peakBytes; // most memory that rendering holds at a time, within 15 %
     // Estimated costs of shadow maps and rays, by which the shadows of virtual lights were chosen, ms on one

@@ -14,8 +14,8 @@ extern "C" {
 
 // ---- sides of patches: the unknowns of the radiosity equations
 
-// Two rounds of joining the midpoints of a triangle's edges divide each patch into 16 cells.
-// vplPatchSides_SampleCell defines their order.
+// Two rounds of joining the midpoints of a triangle's edges divide each patch into 16 cells. A group's triangles, one
+// after the other, are divided into 16 of equal area. vplPatchSides_SampleCell defines their order.
 enum { VPL_PATCH_CELLS = 16 };
 
 // One side of a patch. Surfaces reflect on both sides, and only sides that light can reach are in the
@@ -25,11 +25,11 @@ typedef struct vplPatchSide {
     bool back;          // the side that the patch's normal points away from
     uint16_t open;      // bit k: light can reach cell k; never 0
     float area;         // m^2, of the open cells; the patch's whole area where all are open
-    vplVec3 corners[3]; // counter-clockwise seen from this side
-    vplVec3 normal;     // unit, of this side
-    vplVec3 incentre;   // the centre of the inscribed circle
-    vplRgb reflectance;
-    vplRgb emission; // radiosity, W/m^2: pi times the material's radiance, 0 on the back
+    vplVec3 corners[3]; // counter-clockwise seen from this side; of a group's first triangle
+    vplVec3 normal;     // unit, of this side; a group's mean, weighted by area
+    vplVec3 incentre;   // the centre of the inscribed circle; a group's centroid
+    vplRgb reflectance; // a group's mean, weighted by area
+    vplRgb emission;    // radiosity, W/m^2: pi times the material's radiance, 0 on the back
 } vplPatchSide;
 
 typedef struct vplPatchSidesDef {
@@ -76,8 +76,16 @@ vplResult vplPatchSides_Create(const vplPatches* patches, const vplPatchSidesDef
 // NULL is allowed.
 void vplPatchSides_Destroy(vplPatchSides* sides);
 
+// A point of a side.
+typedef struct vplSidePoint {
+    vplVec3 at;
+    vplVec3 normal; // unit, of the side; in a group, of the triangle's side
+    int triangle;   // of the geometry
+} vplSidePoint;
+
 // A point of cell k, uniform over it for u, v uniform in [0, 1).
-vplVec3 vplPatchSide_SampleCell(const vplPatchSide* side, int k, float u, float v);
+vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchSide* side, int k, float u,
+                                     float v);
 
 // ---- form factors
 
@@ -279,6 +287,7 @@ typedef struct vplPatchMesh {
     const vplVec3* normals;
     const uint32_t* indices; // three per triangle
     const int* patchOf;      // of each triangle
+    const int* triangleOf;   // of each triangle: that of the geometry which it is a part of
     // One byte per triangle. Bit k: the edge from corner k is an edge of the patch, not a cut.
     const uint8_t* edges;
     int vertexCount, triangleCount;
@@ -306,6 +315,7 @@ vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight wei
 typedef struct vplVertexGather {
     const vplRgb* radiosity; // W/m^2, one per side
     int rays;                // from each vertex, [1, 65536]
+    const bool* only;        // [vertex][front, back]: false: the value stays as it is; NULL: all are gathered
     uint64_t seed;
     vplProgressFcn* progress;
     void* progressUser;

@@ -55,11 +55,16 @@ typedef struct vplRenderStats {
     int64_t lightEvaluations, cutPixels;
     int largestCut;
     int clusters, clusterIterations; // SSVP: clusters of first-bounce lights; iterations of k-means
+    int allClusters;                 // SSVP: clusters of all bounces
+    // SSVP: share of the light at some points that the camera sees that is wrong because a cluster sees other
+    // points than its lights; by test rays, after clusters were split. Negative: not measured.
+    double clusterDisagreement;
 
-    int patches, patchSides; // radiosity: patches, and sides of them that light reaches
-    bool linked;             // radiosity: light was exchanged by links
-    int64_t formFactors;     // radiosity: pairs of sides, or links
-    vplSolveStats solve;     // radiosity: the solver of the last frame
+    int patches, patchSides;           // radiosity: patches, and sides of them that light reaches
+    int patchGroups, groupedTriangles; // radiosity: patches that are groups, and the triangles in them
+    bool linked;                       // radiosity: light was exchanged by links
+    int64_t formFactors;               // radiosity: pairs of sides, or links
+    vplSolveStats solve;               // radiosity: the solver of the last frame
 
     int passes; // the picture is their mean; path tracing: up to 32 paths per pixel each
     // Estimated rmse of the picture against the true one, and the same divided by the picture's mean; negative: not

@@ -115,6 +115,31 @@ typedef struct vplCompensationDef {
     bool seesReflection; // the picture is lit by the other lights
 } vplCompensationDef;
 
+// The light that a ray of a final gather meets.
+typedef struct vplMetLight {
+    vplRgb radiosity; // of reflected light, on the side that the ray hit, W/m^2
+    // Metres. Hits that are nearer are lit by rays of their own instead; 0: none are.
+    float size;
+} vplMetLight;
+
+typedef vplMetLight vplMeetFcn(const void* user, const vplHit* hit, vplVec3 direction);
+
+// Final gather: indirect light is found by rays from each pixel. With interleaving, the pixels of a square of
+// K x K take different parts of K^2 rayCount directions, and the filter takes the mean of neighbours.
+// Source: Reichert, A Two-Pass Radiosity Method Driven by Lights and Viewer Position, Cornell 1992.
+typedef struct vplGatherDef {
+    int rayCount;      // per pixel, [1, VPL_MAX_NEAR_RAYS]
+    uint32_t firstRay; // index of a pixel's first ray in its sequence
+    uint64_t seed;
+    vplMeetFcn* meet; // called by all workers at the same time
+    const void* user;
+    const vplEmitterDef* emitters; // they light near hits, with shadow rays
+    int emitterCount;
+    const vplShadeLight* areaLights; // as in vplShadeDef
+    int areaLightCount;
+    float areaLightMinDistance;
+} vplGatherDef;
+
 typedef struct vplShadeDef {
     vplLighting lighting;
     vplAccumulation accumulation;
@@ -156,6 +181,7 @@ typedef struct vplShadeDef {
     float cutError;                         // lightcuts: see vplRenderOptions
     bool emission;                          // the picture shows the emission of surfaces
     const vplCompensationDef* compensation; // physical only; NULL: light taken by the clamp is lost
+    const vplGatherDef* gather;             // deferred and interleaved, physical only; NULL: no final gather
     vplProgressFcn* progress;               // called while vplShadeView draws; default NULL
     void* progressUser;
 } vplShadeDef;

@@ -10,6 +10,10 @@ static void addRadiosity(json_t* root, const vplRenderStats* stats)
     }
     const vplSolveStats* s = &stats->solve;
     json_object_set_new(root, "patch_sides", json_integer(stats->patchSides));
+    if (stats->patchGroups > 0) {
+        json_object_set_new(root, "patch_groups", json_integer(stats->patchGroups));
+        json_object_set_new(root, "grouped_triangles", json_integer(stats->groupedTriangles));
+    }
     json_object_set_new(root, stats->linked ? "links" : "form_factors", json_integer(stats->formFactors));
     if (s->rowSumMax == 0) {
         return; // no light was exchanged, or no statistics were asked for
@@ -29,6 +33,9 @@ static void addSome(json_t* root, const vplRenderStats* s)
     if (s->clusters > 0) {
         json_object_set_new(root, "clusters", json_integer(s->clusters));
         json_object_set_new(root, "cluster_iterations", json_integer(s->clusterIterations));
+        json_object_set_new(root, "all_clusters", json_integer(s->allClusters));
+        json_object_set_new(root, "cluster_disagreement",
+                            s->clusterDisagreement < 0 ? json_null() : json_real(s->clusterDisagreement));
     }
     if (s->cutPixels > 0) {
         json_object_set_new(root, "light_evaluations", json_integer(s->lightEvaluations));

@@ -12,6 +12,7 @@
 // The search around one triangle.
 typedef struct Search {
     const vplGeometry* geometry;
+    const uint8_t* isUncut; // NULL: no triangle is
     vplArena* scratch;
     vplCutSegments* out;
     int triangle;
@@ -53,9 +54,17 @@ static bool areNeighbours(const vplGeometry* g, int triangle, int other)
     return shared >= 2;
 }
 
+static bool isUncut(const Search* s, int triangle)
+{
+    return s->isUncut != NULL && s->isUncut[triangle];
+}
+
 static void addCandidate(Search* s, int triangle)
 {
     const vplGeometry* g = s->geometry;
+    if (isUncut(s, triangle)) {
+        return;
+    }
     const vplTriangleCorners c = vplGeometry_Corners(g, triangle);
     for (int k = 0; k < 3; k++) {
         const float a = vplComponent(c.corner[0], k), b = vplComponent(c.corner[1], k),
@@ -186,16 +195,17 @@ static vplResult searchAround(Search* s, int triangle)
     return addSegments(s);
 }
 
-vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* g, vplCutSegments* out)
+vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* g, const uint8_t* uncut,
+                              vplCutSegments* out)
 {
     *out = (vplCutSegments){.tolerance = vplCutTolerance(g)};
     out->first = vplArena_Alloc(scratch, (size_t)g->triangleCount + 1, sizeof *out->first);
     TRY(vplArena_Check(scratch));
-    Search s = {.geometry = g, .scratch = scratch, .out = out, .result = VPL_SUCCESS};
+    Search s = {.geometry = g, .isUncut = uncut, .scratch = scratch, .out = out, .result = VPL_SUCCESS};
     for (int t = 0; t < g->triangleCount; t++) {
         out->first[t] = (int)out->count;
         TRY(t % 1024 == 1023 ? vplAsk(g->context) : VPL_SUCCESS);
-        if (vplCanBeHit(g, t)) {
+        if (vplCanBeHit(g, t) && !isUncut(&s, t)) {
             TRY(searchAround(&s, t));
         }
     }

@@ -22,8 +22,10 @@ typedef struct vplCutSegments {
     double tolerance; // metres
 } vplCutSegments;
 
-// Finds where other surfaces meet each triangle, with the ray tree if there is one. (cut_search.c)
-vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* geometry, vplCutSegments* segmentsOut);
+// Finds where other surfaces meet each triangle, with the ray tree if there is one. `isUncut`: triangles that neither
+// cut nor are cut; NULL: there are none. (cut_search.c)
+vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* geometry, const uint8_t* isUncut,
+                              vplCutSegments* segmentsOut);
 
 // The intersection of a triangle with a convex polygon: up to four segments if they lie in one plane, else up to
 // one. Returns how many there are. (cut_segment.c)

@@ -79,6 +79,9 @@ static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tre
     for (size_t i = 0; i < nodes; i++) {
         tree->nodes[i].patch = -1;
     }
+    const vplPatchGroups groups = {patches->groupCount, patches->firstMember, patches->members,
+                                   patches->areaUpTo};
+    TRY(vplPatchTree_CopyGroups(tree, &groups));
     return vplPatchTree_CopyCuts(tree, patches->cuts, patches->firstCut);
 }
 
@@ -98,7 +101,7 @@ vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, 
     if (heap.patches == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    fillHeap(&heap, patches->patchCount);
+    fillHeap(&heap, patches->patchCount - patches->groupCount);
     vplPatchTree tree = {.geometry = patches->geometry};
     const int more = vplMaxi(0, vplMini(heap.count, count - patches->patchCount));
     const vplResult result = copyTree(patches, more, &tree);

@@ -166,6 +166,19 @@ vplResult vplPatchTree_CopyCuts(vplPatchTree* tree, const vplPatchCut* cuts, con
     return vplArena_Check(tree->arena);
 }
 
+vplResult vplPatchTree_CopyGroups(vplPatchTree* tree, const vplPatchGroups* groups)
+{
+    const size_t count = (size_t)groups->count, members = count > 0 ? (size_t)groups->first[count] : 0;
+    if (count == 0) {
+        return VPL_SUCCESS;
+    }
+    tree->groups.count = groups->count;
+    tree->groups.first = vplArena_Copy(tree->arena, groups->first, count + 1, sizeof *groups->first);
+    tree->groups.members = vplArena_Copy(tree->arena, groups->members, members, sizeof *groups->members);
+    tree->groups.areaUpTo = vplArena_Copy(tree->arena, groups->areaUpTo, members, sizeof *groups->areaUpTo);
+    return vplArena_Check(tree->arena);
+}
+
 bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square)
 {
     const vplPatchNode whole = tree->nodes[node];
@@ -208,10 +221,41 @@ static float lengthOf(double square)
     return (double)length * (double)length < square ? nextafterf(length, INFINITY) : length;
 }
 
+// Marks the triangles of groups with the number that their group has among the patches. Returns how many there are.
+static int markGroups(const vplPatchTree* tree)
+{
+    const int members = tree->groups.count > 0 ? tree->groups.first[tree->groups.count] : 0;
+    for (int g = 0; g < tree->groups.count; g++) {
+        for (int m = tree->groups.first[g]; m < tree->groups.first[g + 1]; m++) {
+            tree->nodes[tree->groups.members[m]].patch = g;
+        }
+    }
+    return members;
+}
+
+static void listGroups(const vplPatchTree* tree, vplPatches* patches, int* list)
+{
+    const int before = patches->patchCount;
+    for (int g = 0; g < tree->groups.count; g++) {
+        list[patches->patchCount++] = tree->groups.members[tree->groups.first[g]];
+        for (int m = tree->groups.first[g]; m < tree->groups.first[g + 1]; m++) {
+            tree->nodes[tree->groups.members[m]].patch = before + g;
+        }
+    }
+    patches->groupCount = tree->groups.count;
+    patches->firstMember = tree->groups.first;
+    patches->members = tree->groups.members;
+    patches->areaUpTo = tree->groups.areaUpTo;
+}
+
 static void listPatches(const vplPatchTree* tree, vplPatches* patches, int* list)
 {
     double longest = 0;
+    const bool grouped = markGroups(tree) > 0;
     for (int t = 0; t < tree->geometry->triangleCount; t++) {
+        if (grouped && tree->nodes[t].patch >= 0) {
+            continue;
+        }
         for (int i = vplCanBeHit(tree->geometry, t) ? firstLeaf(tree->nodes, t) : -1; i >= 0;
              i = nextLeaf(tree->nodes, i)) {
             const vplTriangleCorners at = cornersOf(tree, i);
@@ -221,6 +265,7 @@ static void listPatches(const vplPatchTree* tree, vplPatches* patches, int* list
         }
     }
     patches->longestEdge = lengthOf(longest);
+    listGroups(tree, patches, list);
 }
 
 static vplResult makePatches(vplPatchTree* tree, vplPatches** patchesOut)

@@ -4,7 +4,7 @@
 #define VPL_GEOMETRY_PATCH_TREE_H
 
 #include "base/arena.h"
-#include "geometry/triangle.h"
+#include "geometry/patch_groups.h"
 
 typedef struct vplPatchTree {
     const vplGeometry* geometry;
@@ -20,6 +20,7 @@ typedef struct vplPatchTree {
     const vplPatchCut* cuts;
     const int* firstCut;
     int cutPatches, unresolvedCuts;
+    vplPatchGroups groups;
 } vplPatchTree;
 
 // Rotates the corners until corner 0 is opposite the longest edge; among equally long ones 01 goes before 12
@@ -64,6 +65,9 @@ void vplPatchTree_AddPieces(vplPatchTree* tree, const vplPatchNode* nodes, size_
 
 // Copies cuts into the tree's arena. `firstCut` has an entry more than there are triangles; NULL: there are none.
 vplResult vplPatchTree_CopyCuts(vplPatchTree* tree, const vplPatchCut* cuts, const int* firstCut);
+
+// Copies groups into the tree's arena.
+vplResult vplPatchTree_CopyGroups(vplPatchTree* tree, const vplPatchGroups* groups);
 
 // Gives a node two children if the square of its longest edge exceeds `square`. False where it stays a leaf.
 bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square);

@@ -8,6 +8,9 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 
+#include <limits.h>
+#include <stdlib.h>
+
 enum { PATCH_COOKIE = 0x56504ca0 };
 
 vplPatchDef vplDefaultPatchDef(void)
@@ -60,9 +63,11 @@ static int countPart(const vplTriangleCorners* part, vplVec3 normal, double squa
     return count;
 }
 
-// The triangles that are bisected, or their pieces.
+// The triangles that are bisected, or their pieces. Those of groups are not.
 typedef struct Roots {
     const vplGeometry* geometry;
+    vplGroupTree* tree; // NULL: there are no groups
+    int groupCount;
     vplCutSegments segments;
     vplCutPieces pieces; // nodes: NULL where triangles are whole
     int count;           // of nodes
@@ -74,7 +79,8 @@ static bool getRoot(const Roots* roots, int i, vplTriangleCorners* cornersOut, v
     const vplGeometry* g = roots->geometry;
     const vplPatchNode* node = roots->pieces.nodes != NULL ? &roots->pieces.nodes[i] : NULL;
     const int triangle = node != NULL ? node->triangle : i;
-    if (!vplCanBeHit(g, triangle) || (node != NULL && node->children >= 0)) {
+    if (!vplCanBeHit(g, triangle) || (roots->tree != NULL && vplGroupTree_IsGrouped(roots->tree)[triangle]) ||
+        (node != NULL && node->children >= 0)) {
         return false;
     }
     *cornersOut =
@@ -86,7 +92,7 @@ static bool getRoot(const Roots* roots, int i, vplTriangleCorners* cornersOut, v
 // The number of patches of all triangles, at most `enough`. Allocates nothing: too many are refused before.
 static int countAll(const Roots* roots, double square, int rounds, int enough)
 {
-    int count = 0;
+    int count = roots->groupCount;
     for (int i = 0; i < roots->count && count < enough; i++) {
         vplTriangleCorners corners;
         vplVec3 normal;
@@ -139,6 +145,41 @@ static double lengthFor(const Roots* roots, int count, int rounds)
     return low;
 }
 
+// ---- groups
+
+static int countWith(Roots* roots, double length, int rounds, int enough)
+{
+    roots->groupCount = vplGroupTree_Group(roots->tree, length);
+    return countAll(roots, length * length, rounds, enough);
+}
+
+// The T that gives about `count` patches, with groups of triangles. Halves the interval in which it lies until the count
+// is within 2 %, or jumps over it.
+static double groupLength(Roots* roots, int count, int rounds)
+{
+    const int enough = count < VPL_MAX_PATCHES / 2 ? 2 * count : VPL_MAX_PATCHES;
+    double high = vplGroupTree_Diagonal(roots->tree) * (1 + 0x1p-15), low = high;
+    int fewer = countWith(roots, high, rounds, enough), more = fewer;
+    for (int i = 0; i < VPL_MAX_PATCH_ROUNDS && more < count; i++) {
+        high = low;
+        fewer = more;
+        low *= 0.5;
+        more = countWith(roots, low, rounds, enough);
+    }
+    while (high - low > low * 0x1p-18 && more > count + count / 50 && fewer < count - count / 50) {
+        const double middle = 0.5 * (low + high);
+        const int found = countWith(roots, middle, rounds, enough);
+        if (found < count) {
+            high = middle;
+            fewer = found;
+        } else {
+            low = middle;
+            more = found;
+        }
+    }
+    return more - count <= count - fewer ? low : high;
+}
+
 // ---- growing
 
 static void grow(vplPatchTree* tree, double square, int rounds)
@@ -156,25 +197,79 @@ static void grow(vplPatchTree* tree, double square, int rounds)
 }
 
 // Cuts triangles where other surfaces meet them. Where none does, roots stay triangles.
-static vplResult cut(vplArena* scratch, Roots* roots)
+static vplResult cut(vplArena* scratch, const uint8_t* uncut, Roots* roots)
 {
     const vplGeometry* g = roots->geometry;
     TRY(vplArena_Check(scratch));
-    TRY(vplCutSegments_Find(scratch, g, &roots->segments));
+    roots->pieces = (vplCutPieces){.nodes = NULL};
+    roots->count = g->triangleCount;
+    TRY(vplCutSegments_Find(scratch, g, uncut, &roots->segments));
     if (roots->segments.count == 0) {
         return VPL_SUCCESS;
     }
     TRY(vplCutPieces_Make(scratch, g, &roots->segments, &roots->pieces));
     TRY(vplCutPieces_Snap(scratch, g, roots->segments.tolerance, &roots->pieces));
     roots->count = (int)roots->pieces.nodeCount;
+    return VPL_SUCCESS;
+}
+
+static void warnUnresolved(const Roots* roots)
+{
     if (roots->pieces.unresolved > 0) {
-        vplLog(g->context, VPL_LOG_WARNING,
+        vplLog(roots->geometry->context, VPL_LOG_WARNING,
                "%d of %zu lines where surfaces meet do not divide all patches that they cross, so light may "
                "leak there",
                roots->pieces.unresolved, roots->segments.count);
     }
+}
+
+// Triangles without groups: T is chosen before they are cut.
+static vplResult chooseLength(const vplPatchDef* def, vplArena* scratch, Roots* roots, double* lengthOut)
+{
+    *lengthOut = def->size > 0 ? (double)def->size : lengthFor(roots, def->count, def->rounds);
+    return def->cut ? cut(scratch, NULL, roots) : VPL_SUCCESS;
+}
+
+// Groups and cuts triangles for a length. Returns how many patches there are in *countOut.
+static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* roots, double length,
+                             int* countOut)
+{
+    roots->pieces = (vplCutPieces){.nodes = NULL};
+    roots->count = roots->geometry->triangleCount;
+    roots->groupCount = vplGroupTree_Group(roots->tree, length);
+    TRY(def->cut ? cut(scratch, vplGroupTree_FindUncut(roots->tree, length), roots) : VPL_SUCCESS);
+    *countOut = countAll(roots, length * length, def->rounds, VPL_MAX_PATCHES);
     return VPL_SUCCESS;
 }
+
+// Groups and cuts depend on each other: what is in a group is not cut, and what cuts add leaves fewer patches for the
+// rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight.
+static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* roots, double* lengthOut)
+{
+    enum { ROUNDS = 8 };
+    const int count = def->count;
+    int least = 1, most = VPL_MAX_PATCHES, wanted = count, best = INT_MAX, found;
+    TRY(vplGroupTree_Build(scratch, roots->geometry, &roots->tree));
+    if (def->size > 0) {
+        *lengthOut = (double)def->size;
+        return groupAndCut(def, scratch, roots, *lengthOut, &found);
+    }
+    for (int round = 0; round < ROUNDS && least <= most && best > count / 10; round++) {
+        const double length = groupLength(roots, wanted, def->rounds);
+        TRY(groupAndCut(def, scratch, roots, length, &found));
+        if (abs(found - count) < best) {
+            best = abs(found - count);
+            *lengthOut = length;
+        }
+        least = found < count ? wanted + 1 : least;
+        most = found > count ? wanted - 1 : most;
+        const int next = wanted - (found - count);
+        wanted = next >= least && next <= most ? next : least + (vplMini(most, 2 * wanted) - least) / 2;
+    }
+    return groupAndCut(def, scratch, roots, *lengthOut, &found);
+}
+
+// ---- growing
 
 static vplResult build(const Roots* roots, double length, const vplPatchDef* def, vplPatches** patchesOut)
 {
@@ -194,12 +289,16 @@ static vplResult build(const Roots* roots, double length, const vplPatchDef* def
         (size_t)(points > 0 ? count - countAll(roots, INFINITY, 0, count) : count); // bisections
     vplPatchTree tree = {.geometry = g, .unresolvedCuts = roots->pieces.unresolved};
     if (points > 0) {
-        const Roots whole = {.geometry = g, .count = g->triangleCount};
+        const Roots whole = {
+            .geometry = g, .tree = roots->tree, .groupCount = roots->groupCount, .count = g->triangleCount};
         tree.cutPatches = count - countAll(&whole, square, def->rounds, count);
     }
     vplResult result = vplPatchTree_Reserve(&tree, corners + more, (size_t)roots->count + 2 * more);
     if (result == VPL_SUCCESS && points > 0) {
         result = vplPatchTree_CopyCuts(&tree, roots->segments.list, roots->segments.first);
+    }
+    if (result == VPL_SUCCESS && roots->groupCount > 0) {
+        result = vplGroupTree_List(roots->tree, tree.arena, &tree.groups);
     }
     if (result == VPL_SUCCESS) {
         if (points > 0) {
@@ -216,11 +315,11 @@ vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def,
 {
     TRY(checkDef(geometry, def));
     Roots roots = {.geometry = geometry, .count = geometry->triangleCount};
-    vplArena* scratch = def->cut ? vplArena_Create(geometry->context) : NULL;
-    vplResult result = def->cut ? cut(scratch, &roots) : VPL_SUCCESS;
+    double length = 0;
+    vplArena* scratch = def->cut || def->group ? vplArena_Create(geometry->context) : NULL;
+    vplResult result = (def->group ? chooseGroups : chooseLength)(def, scratch, &roots, &length);
     if (result == VPL_SUCCESS) {
-        const Roots whole = {.geometry = geometry, .count = geometry->triangleCount};
-        const double length = def->size > 0 ? (double)def->size : lengthFor(&whole, def->count, def->rounds);
+        warnUnresolved(&roots);
         result = build(&roots, length, def, patchesOut);
     }
     vplArena_Destroy(scratch);
@@ -234,8 +333,21 @@ void vplPatches_Destroy(vplPatches* patches)
 
 // ---- queries
 
+vplPatchParts vplPatches_GetParts(const vplPatches* p, int patch)
+{
+    if (!vplPatches_IsGroup(p, patch)) {
+        return (vplPatchParts){&p->patches[patch], 1};
+    }
+    const int* first = &p->firstMember[patch - (p->patchCount - p->groupCount)];
+    return (vplPatchParts){&p->members[first[0]], first[1] - first[0]};
+}
+
 double vplPatches_Area(const vplPatches* patches, int patch)
 {
+    if (vplPatches_IsGroup(patches, patch)) {
+        return patches
+            ->areaUpTo[patches->firstMember[patch + 1 - (patches->patchCount - patches->groupCount)] - 1];
+    }
     const vplTriangleCorners at =
         vplCornersOf(patches->positions, patches->nodes[patches->patches[patch]].corners);
     return vplTriangle_Area(&at);

@@ -56,6 +56,18 @@ void vplTriangle_Barycentrics(const vplVec3 corners[3], vplVec3 point, double ba
 // point to the face. False where t is not positive and finite.
 bool vplRay_HitFace(const vplRay* ray, const vplPlacement* placement, int face, double side, vplHit* hitOut);
 
+static inline bool vplPatches_IsGroup(const vplPatches* patches, int patch)
+{
+    return patch >= patches->patchCount - patches->groupCount;
+}
+
+// The triangles of all groups.
+static inline int vplPatches_CountGrouped(const vplPatches* patches)
+{
+    return patches->groupCount > 0 ? patches->firstMember[patches->groupCount] : 0;
+}
+
+// The triangle of a patch, or the first of a group.
 static inline int vplPatches_TriangleOf(const vplPatches* patches, int patch)
 {
     return patches->nodes[patches->patches[patch]].triangle;

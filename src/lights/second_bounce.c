@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Second-bounce lights of SSVP: samples of the clusters' paraboloid maps.
+// Second-bounce lights of SSVP, and those of further bounces: samples of the clusters' paraboloid maps.
 // Based on: Vitor Aranha, Marcio Macedo and Antonio Apolinario, Screen-Space Virtual Point Light Propagation
 // for Real-Time Global Illumination, section II-B: evenly spread points of a cluster's paraboloid map.
 // Departs: points of equal density on the disk do not share a diffuse light's flux equally, so each has the
@@ -10,11 +10,11 @@
 #include "math/sampling.h"
 #include "math/vec.h"
 
-enum { SECOND_BOUNCE_COOKIE = 0x56504c67, SHIFT_STREAM = 0x53424e01 };
+enum { SECOND_BOUNCE_COOKIE = 0x56504c67, SHIFT_STREAM = 0x53424e01, MAX_STEPS = 64 };
 
 vplSecondBounceDef vplDefaultSecondBounceDef(void)
 {
-    return (vplSecondBounceDef){256, VPL_SECOND_WEIGHT_COSINE, 0, SECOND_BOUNCE_COOKIE};
+    return (vplSecondBounceDef){256, VPL_SECOND_WEIGHT_COSINE, 0, 1, SECOND_BOUNCE_COOKIE};
 }
 
 typedef struct Sampling {
@@ -92,7 +92,7 @@ static void takeSample(Sampling* s, int cluster, int k, int m, int particle)
             .normal = vplDot(direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal,
             .light = light,
             .weight = (float)((double)s->set->particleCount / m),
-            .step = 1,
+            .step = s->def->step,
             .particle = particle,
             .object = hit.object};
     }
@@ -127,6 +127,10 @@ static vplResult check(const vplLightClusters* clusters, const vplParaboloidMaps
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplSecondBounceDef.count is %d, must be in [0, %d]",
                        def->count, VPL_MAX_LIGHTS);
     }
+    if (def->step < 1 || def->step >= MAX_STEPS) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplSecondBounceDef.step is %d, must be in [1, %d]",
+                       def->step, MAX_STEPS - 1);
+    }
     if (maps->count != clusters->count || maps->triangles == NULL) {
         return vplFail(
             context, VPL_INVALID_ARGUMENT,
@@ -142,11 +146,11 @@ vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClu
 {
     Sampling s = {.geometry = geometry, .clusters = clusters, .maps = maps, .def = def};
     TRY(check(clusters, maps, def));
-    TRY(vplLightSet_Make(maps->context, def->count, 2, &s.arrays, &s.set));
+    TRY(vplLightSet_Make(maps->context, def->count, def->step + 1, &s.arrays, &s.set));
     s.set->particleCount = def->count;
     takeSamples(&s);
-    s.arrays.stepCounts[1] = def->count;
-    s.arrays.lightsInStep[1] = s.set->lightCount;
+    s.arrays.stepCounts[def->step] = def->count;
+    s.arrays.lightsInStep[def->step] = s.set->lightCount;
     *setOut = s.set;
     return VPL_SUCCESS;
 }

@@ -39,6 +39,9 @@ enum { VPL_FACTOR_SAMPLES = 16, VPL_QUADRATURE_POINTS = 3 };
 typedef struct vplFactorSamples {
     float at[VPL_FACTOR_SAMPLES][3][VPL_SIDE_LANES];
     float origin[VPL_FACTOR_SAMPLES][3][VPL_SIDE_LANES];
+    // Of the triangle at the sample, which differ in a group.
+    float normal[VPL_FACTOR_SAMPLES][3][VPL_SIDE_LANES];
+    int32_t skipFirst[VPL_FACTOR_SAMPLES][VPL_SIDE_LANES], skipCount[VPL_FACTOR_SAMPLES][VPL_SIDE_LANES];
 } vplFactorSamples;
 
 // Sixteen sides. Unused lanes have the normal 0 and exchange nothing.
@@ -50,7 +53,7 @@ typedef struct vplFactorBlock {
     float radius2[VPL_SIDE_LANES]; // squared distance to the farthest corner, m^2
     float area[VPL_SIDE_LANES];    // 0: unused lane
     float low[3], high[3];         // bounds of all corners
-    int32_t skipFirst[VPL_SIDE_LANES], skipCount[VPL_SIDE_LANES];
+    uint32_t groups;               // bit l: side l is one of a group of triangles, whose samples alone count
     vplFactorSamples samples;
 } vplFactorBlock;
 
@@ -89,7 +92,7 @@ typedef struct vplLinkPoints {
     float at[3][VPL_LINK_POINTS], normal[3][VPL_LINK_POINTS]; // [axis]
     float place[3][VPL_LINK_POINTS];                          // from the node's middle, in radii
     float weight[VPL_LINK_POINTS], slope[3][VPL_LINK_POINTS];
-    int side[VPL_LINK_POINTS];
+    int triangle[VPL_LINK_POINTS];
 } vplLinkPoints;
 
 // cos cos / (pi r^2) between point i of p and point k of q, 1/m^2; 0 where one point is behind the other's

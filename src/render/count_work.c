@@ -6,6 +6,7 @@
 #include "math/vec.h"
 #include "render/plan.h"
 #include "render/stages/make.h"
+#include "render/stages/ssvp.h"
 #include "render/stages/results.h"
 #include "visibility/hemi_map.h"
 
@@ -126,7 +127,7 @@ static void addPicture(const Scale* s, vplWork* w)
     // Of the samples of a pixel only those at edges differ, and edges are as long as the picture is wide.
     const double side = sqrt(fmax(all, 1)), edges = 1 + fmin(4 / side, 0.5) * (points - 1);
     const double pixels = all * s->probe.seen * edges, pairs = pixels * lights;
-    const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
+    const bool filtered = vplPixelsShareLight(s->plan);
     w->counts[PIXEL] += 0.3 * all + 75 * (points - 1) * side + (filtered ? 0.8 * all : 0);
     w->counts[TRIANGLE] += s->triangles * supersample * (points > 1 ? 7 : 1.5);
     addDirect(s, pixels, w);
@@ -149,9 +150,12 @@ static void addPicture(const Scale* s, vplWork* w)
     default:
         w->counts[LIGHT] += pairs;
     }
-    if (s->plan->showsPatches) {
+    if (s->plan->gathers) {
+        // Near hits cast a quarter more, and take sixteen points together.
+        w->counts[PATH_RAY] += 1.4 * pixels * o->radiosity.gather * s->pathDepth;
+    } else if (s->plan->showsPatches) {
         w->counts[PIXEL] += 0.15 * all * points;
-        w->counts[TRIANGLE] += 2.0 * s->plan->patches * points;
+        w->counts[TRIANGLE] += 2.0 * vplPlan_DrawnPatches(s->plan) * points;
     }
 }
 
@@ -180,9 +184,38 @@ static void addMaps(double faces, double size, const Scale* s, vplWork* w)
 static void addParaboloids(double lights, const Scale* s, vplWork* w)
 {
     const vplSsvpOptions* o = &s->plan->options.ssvp;
-    const double maps = fmin(lights, o->clusters) * o->hemispheres, size = o->paraboloidSize;
+    const double maps = fmin(lights, vplSsvpMostClusters(s->plan)) * o->hemispheres, size = o->paraboloidSize;
     w->counts[TEXEL] += 8 * maps * size * size;
     w->counts[TRIANGLE] += 0.3 * maps * s->triangles;
+}
+
+// Rays of lights to points that the camera sees, by which lights are chosen and clusters are split; three of
+// ten pairs face each other.
+static void addChoice(double lights, const Scale* s, vplWork* w)
+{
+    const vplPlan* p = s->plan;
+    const double candidates = vplSsvpChooses(p) ? vplSsvpCountCandidates(p, (int)lights) : 0;
+    w->counts[SHADOW_RAY] += 0.3 * (256 * candidates + (vplSsvpSplits(p) ? 128 * lights : 0)) * s->depth;
+    w->counts[PATH_RAY] += (candidates > 0 ? candidates : lights) * s->pathDepth;
+}
+
+// Without maps to sample, all bounces after the second share their clusters.
+static void addFurtherBounces(const Scale* s, vplWork* w)
+{
+    const vplPlan* p = s->plan;
+    double all = 0;
+    for (int k = 2; k < p->options.maxBounces; k++) {
+        const double lights = vplSsvpCountLights(p, k);
+        all += lights;
+        if (vplSsvpSamplesMaps(p)) {
+            addParaboloids(lights, s, w);
+        } else {
+            addChoice(lights, s, w);
+        }
+    }
+    if (!vplSsvpSamplesMaps(p) && vplSsvpSees(p)) {
+        addParaboloids(all, s, w);
+    }
 }
 
 static double facesOf(const vplPlan* p, bool reflective)
@@ -214,8 +247,15 @@ static vplWork workOf(const Scale* s, vplStageId id)
     case VPL_STAGE_PARTICLES:
         w.counts[PATH_RAY] = s->lights * s->pathDepth;
         break;
-    case VPL_STAGE_FIRST_BOUNCE: // rays test which light leaves the scene
-        w.counts[PATH_RAY] = (double)o->ssvp.firstBounce * o->ssvp.oversampling * s->pathDepth;
+    case VPL_STAGE_FIRST_BOUNCE: // rays test which light leaves the scene, or what the camera sees
+        addChoice(o->ssvp.firstBounce, s, &w);
+        w.counts[PATH_RAY] += (double)o->ssvp.firstBounce * o->ssvp.oversampling * s->pathDepth;
+        break;
+    case VPL_STAGE_SECOND_BOUNCE:
+        addChoice(vplSsvpSamplesMaps(p) ? 0 : o->ssvp.secondBounce, s, &w);
+        break;
+    case VPL_STAGE_FURTHER_BOUNCES:
+        addFurtherBounces(s, &w);
         break;
     case VPL_STAGE_PARABOLOIDS:
         addParaboloids(o->ssvp.firstBounce, s, &w);
@@ -226,16 +266,20 @@ static vplWork workOf(const Scale* s, vplStageId id)
     case VPL_STAGE_SIDES:
         w.counts[PATH_RAY] = 90.0 * p->patches * s->pathDepth;
         break;
-    case VPL_STAGE_FORM_FACTORS:
-        w.counts[FORM_FACTOR] =
-            p->linked ? 20000 * s->sides
-                      : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) * s->depth;
+    case VPL_STAGE_FORM_FACTORS: // groups have more samples, and no shaft finds what may be in the way
+        w.counts[FORM_FACTOR] = p->linked
+                                    ? 20000 * s->sides
+                                    : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) *
+                                                            s->depth * (p->patchGroups > 0 ? 3 : 1);
         break;
     case VPL_STAGE_PATCH_LIGHT:
         w.counts[SHADOW_RAY] = s->sides * o->radiosity.lightSamples * fmax(s->emitters, s->lamps) * s->depth;
         break;
     case VPL_STAGE_SOLUTION: // about 20 sweeps
         w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.55 * pairs;
+        break;
+    case VPL_STAGE_VERTEX_LIGHT: // 64 rays from every tenth vertex or so, which the camera sees
+        w.counts[PATH_RAY] = 8.0 * p->groupedTriangles * s->pathDepth;
         break;
     case VPL_STAGE_PICTURE:
         addPicture(s, &w);

@@ -47,8 +47,47 @@ static Bytes paraboloids(const Scale* s, double lights, double values)
 {
     const int size = s->plan->options.ssvp.paraboloidSize;
     const double texels = 2 * (double)vplParaboloidMap_Texels(size), drawn = (double)vplHemiMap_Texels(size);
-    const double count = lights < s->plan->options.ssvp.clusters ? lights : s->plan->options.ssvp.clusters;
+    const double most = vplSsvpMostClusters(s->plan), count = lights < most ? lights : most;
     return (Bytes){4 * values * (count * texels + s->workers * drawn), 0};
+}
+
+// Lights of a bounce that are kept, and those that they are chosen from: so many.
+static Bytes chosen(double lights, double all)
+{
+    return (Bytes){(lights + all) * sizeof(vplVirtualLight), 60 * all};
+}
+
+// Where there are no more candidates than lights, all are kept.
+static Bytes bounce(const Scale* s, double lights)
+{
+    const double all = vplSsvpCountCandidates(s->plan, (int)lights);
+    return chosen(lights, all > lights ? all : 0);
+}
+
+// K-means, and where clusters are split, what each light sees.
+static Bytes clusters(const Scale* s, double lights)
+{
+    return vplSsvpSplits(s->plan) ? (Bytes){7 * lights + 56.0 * vplSsvpMostClusters(s->plan), 45 * lights}
+                                  : (Bytes){3 * lights, 45 * lights};
+}
+
+// All bounces after the second: each has clusters and maps where it is sampled from maps; else they share one
+// set of them.
+static Bytes furtherBounces(const Scale* s)
+{
+    const vplPlan* p = s->plan;
+    const bool sampled = vplSsvpSamplesMaps(p);
+    double lights = 0, all = 0, held = 0, scratch = 0;
+    for (int k = 2; k < p->options.maxBounces; k++) {
+        const double mine = vplSsvpCountLights(p, k);
+        lights += mine;
+        all += vplSsvpChooses(p) ? vplSsvpCountCandidates(p, (int)mine) : 0;
+        held += sampled ? paraboloids(s, mine, k + 1 < p->options.maxBounces ? 2 : 1).held : 0;
+    }
+    const Bytes made = chosen(lights, all), grouped = clusters(s, lights);
+    held += sampled || !vplSsvpSees(p) ? 0 : paraboloids(s, lights, 1).held;
+    scratch = made.scratch > grouped.scratch ? made.scratch : grouped.scratch;
+    return (Bytes){held + made.held + grouped.held, scratch};
 }
 
 static Bytes formFactors(const Scale* s, double sides)
@@ -61,7 +100,8 @@ static Bytes formFactors(const Scale* s, double sides)
 static Bytes patchLight(const Scale* s, double sides)
 {
     const double chunk = sides < 4096 ? sides : 4096;
-    return (Bytes){28 * sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
+    const double cells = s->plan->gathers ? 12.0 * VPL_PATCH_CELLS : 0;
+    return (Bytes){(28 + cells) * sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
 }
 
 // The last draft of adaptive patches has two thirds of the final sides.
@@ -78,7 +118,7 @@ static Bytes adaptivePatches(const Scale* s)
 static double pipelineScratch(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    const bool lit = s->plan->showsVirtual;
+    const bool lit = s->plan->showsVirtual || s->plan->gathers;
     switch (o->pipeline.kind) {
     case VPL_ACCUMULATE_MULTIPASS:
     case VPL_ACCUMULATE_BATCHED:
@@ -97,11 +137,11 @@ static double pipelineScratch(const Scale* s)
 static double sampleScratch(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
+    const bool filtered = vplPixelsShareLight(s->plan);
     const double tile = (o->output.antialias + 1) * 16384.0 + 1024;
     const double tiles = ceil(o->output.width / 64.0) * ceil(o->output.height / 64.0);
     return o->output.antialias > 1 ? tile * s->workers + (filtered ? 4 * s->pixels + 32768 * tiles : 0) +
-                                         (s->plan->showsPatches ? 12 * s->pixels : 0)
+                                         (s->plan->showsPatches && !s->plan->gathers ? 12 * s->pixels : 0)
                                    : 0;
 }
 
@@ -147,6 +187,7 @@ static Bytes picture(const Scale* s)
     scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
     scratch += s->plan->showsVirtual ? lightScratch(s) : 0;
+    scratch += s->plan->gathers ? 12 * s->sides + 4.0 * s->plan->patches : 0; // what rays meet
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
 
@@ -162,7 +203,8 @@ static Bytes estimate(const Scale* s, vplStageId id)
     const vplRenderOptions* o = &p->options;
     const double shadowTexels = (double)o->shadow.mapSize * o->shadow.mapSize,
                  rsmTexels = (double)o->shadow.rsmSize * o->shadow.rsmSize;
-    const bool surfaces = vplSsvpHasSecondBounce(p) || vplSsvpShowsClusters(p);
+    const bool sampled = vplSsvpSamplesMaps(p),
+               surfaces = (vplSsvpHasSecondBounce(p) && sampled) || vplSsvpShowsClusters(p);
     switch (id) {
     case VPL_STAGE_EMITTER_MAPS:
         return (Bytes){countMaps(p, false) * 6 * shadowTexels * sizeof(float) +
@@ -175,19 +217,23 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_PARTICLES: // two counts and a flag per particle
         return (Bytes){s->lights * sizeof(vplVirtualLight), 3e4 + 9.0 * o->particles.count};
     case VPL_STAGE_FIRST_BOUNCE: // and the samples of the map
-        return (Bytes){o->ssvp.firstBounce * (double)sizeof(vplVirtualLight), 56.0 * o->ssvp.firstBounce};
+        return vplSsvpChooses(p) ? bounce(s, o->ssvp.firstBounce)
+                                 : (Bytes){o->ssvp.firstBounce * (double)sizeof(vplVirtualLight),
+                                           56.0 * o->ssvp.firstBounce};
     case VPL_STAGE_CLUSTERS:
-        return (Bytes){3.0 * o->ssvp.firstBounce, 45.0 * o->ssvp.firstBounce};
+        return clusters(s, o->ssvp.firstBounce);
     case VPL_STAGE_SECOND_BOUNCE:
-        return (Bytes){o->ssvp.secondBounce * (double)sizeof(vplVirtualLight), 0};
+        return bounce(s, o->ssvp.secondBounce);
     case VPL_STAGE_SECOND_CLUSTERS:
-        return (Bytes){3.0 * o->ssvp.secondBounce, 45.0 * o->ssvp.secondBounce};
-    case VPL_STAGE_CLUSTERED_LIGHTS:
-        return (Bytes){s->lights * sizeof(vplVirtualLight), 0};
+        return clusters(s, o->ssvp.secondBounce);
+    case VPL_STAGE_FURTHER_BOUNCES:
+        return furtherBounces(s);
+    case VPL_STAGE_CLUSTERED_LIGHTS: // bounces are joined one after the other
+        return (Bytes){s->lights * sizeof(vplVirtualLight), 2 * s->lights * sizeof(vplVirtualLight)};
     case VPL_STAGE_PARABOLOIDS: // distances, and triangles where surfaces are asked for
         return paraboloids(s, o->ssvp.firstBounce, surfaces ? 2 : 1);
     case VPL_STAGE_SECOND_PARABOLOIDS:
-        return paraboloids(s, o->ssvp.secondBounce, 1);
+        return paraboloids(s, o->ssvp.secondBounce, vplSsvpHasFurtherBounces(p) && sampled ? 2 : 1);
     case VPL_STAGE_VIRTUAL_LIGHTS: // twice where they are sorted by cluster
         return (Bytes){s->lights * (double)(o->lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER
                                                 ? 2 * sizeof(vplShadeLight) + sizeof(int)
@@ -196,8 +242,9 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_PATCHES:
         return adaptivePatches(s);
     case VPL_STAGE_PATCH_MESH: // faces of cut patches have vertices of their own
-        return o->radiosity.cuts == VPL_PATCH_CUTS_ON ? (Bytes){320.0 * p->patches, 300.0 * p->patches}
-                                                      : (Bytes){98.0 * p->patches, 98.0 * p->patches};
+        return o->radiosity.cuts == VPL_PATCH_CUTS_ON
+                   ? (Bytes){320 * vplPlan_DrawnPatches(p), 300 * vplPlan_DrawnPatches(p)}
+                   : (Bytes){98 * vplPlan_DrawnPatches(p), 98 * vplPlan_DrawnPatches(p)};
     case VPL_STAGE_FORM_FACTORS:
         return formFactors(s, s->sides);
     case VPL_STAGE_PATCH_LIGHT:
@@ -205,7 +252,8 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_SOLUTION:
         return (Bytes){24 * s->sides, (p->linked ? 152 : 72) * s->sides};
     case VPL_STAGE_VERTEX_LIGHT:
-        return (Bytes){14.0 * p->patches, 57.0 * p->patches};
+        return (Bytes){14 * vplPlan_DrawnPatches(p),
+                       57.0 * p->patches + 16.0 * p->groupedTriangles + (p->gathers ? 12 * s->sides : 0)};
     case VPL_STAGE_PICTURE:
         return picture(s);
     case VPL_STAGE_PATHS: // sums of two halves, and the picture that they resolve to
@@ -257,7 +305,8 @@ static void countDraws(const Scale* s, vplPlan* p)
     const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;
     const int64_t passes =
         o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
-    const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
+    const bool drawn = o->method == VPL_METHOD_RADIOSITY && !p->gathers;
+    const int64_t patchDraws = drawn ? 2 : 0; // of fronts and of backs
     const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
     p->drawCalls =
         objects * (6 * maps + (1 + passes) * supersample) + patchDraws * supersample * vplCountPoints(p);
@@ -265,9 +314,11 @@ static void countDraws(const Scale* s, vplPlan* p)
 
 enum {
     SHADOW_MAPS = 1 << VPL_STAGE_EMITTER_MAPS | 1 << VPL_STAGE_REFLECTIVE_MAPS | 1 << VPL_STAGE_PARABOLOIDS |
-                  1 << VPL_STAGE_SECOND_PARABOLOIDS,
+                  1 << VPL_STAGE_SECOND_PARABOLOIDS | 1 << VPL_STAGE_FURTHER_BOUNCES,
     LIGHTS = 1 << VPL_STAGE_AREA_LIGHTS | 1 << VPL_STAGE_PARTICLES | 1 << VPL_STAGE_FIRST_BOUNCE |
-             1 << VPL_STAGE_SECOND_BOUNCE | 1 << VPL_STAGE_CLUSTERED_LIGHTS | 1 << VPL_STAGE_VIRTUAL_LIGHTS
+             1 << VPL_STAGE_SECOND_BOUNCE | 1 << VPL_STAGE_CLUSTERED_LIGHTS | 1 << VPL_STAGE_VIRTUAL_LIGHTS,
+    // Each pass makes them before it drops those of the last.
+    REMADE = 1 << VPL_STAGE_PARABOLOIDS | 1 << VPL_STAGE_SECOND_PARABOLOIDS | 1 << VPL_STAGE_FURTHER_BOUNCES
 };
 
 // Links depend on what sees what, so a sample of them is found; not for a render, of which that takes 3 %.
@@ -299,7 +350,7 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
     // The caller's own memory in the context does not count, but the scene's does.
     const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplArena_GetBytes(r->run.scene->arena);
     const int64_t peak = (int64_t)vplContext_GetPeakBytes(r->run.context), before = (int64_t)r->peakBytes;
-    int64_t live = (int64_t)vplContext_GetBytes(r->run.context) - foreign;
+    int64_t live = (int64_t)vplContext_GetBytes(r->run.context) - foreign, remade = 0;
     p->peakBytes = (peak > before ? peak : before) - foreign;
     for (int i = 0; i < p->stageCount; i++) {
         vplPlanStage* stage = &p->stages[i];
@@ -314,11 +365,13 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
             live += stage->bytes;
             p->peakBytes = live + stage->scratch > p->peakBytes ? live + stage->scratch : p->peakBytes;
         }
+        remade =
+            p->progressive && (1 << stage->id & REMADE) != 0 && stage->bytes > remade ? stage->bytes : remade;
         p->shadowMapBytes += (1 << stage->id & SHADOW_MAPS) != 0 ? stage->bytes : 0;
         p->lightBytes += (1 << stage->id & LIGHTS) != 0 ? stage->bytes : 0;
     }
     const Bytes more = layers(&s);
-    live += (int64_t)(more.held + more.scratch);
+    live += (int64_t)(more.held + more.scratch) + remade;
     p->peakBytes = live > p->peakBytes ? live : p->peakBytes;
     p->layerBytes = (int64_t)(12 * s.pixels) * __builtin_popcount((unsigned)p->options.output.aovs);
     p->pictureBytes = (int64_t)(12 * s.pixels);

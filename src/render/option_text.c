@@ -199,9 +199,10 @@ static const char* const PRESETS[] = {
     " --patch-cuts off"
     " --solver gauss-seidel --iterations 100 --residual 0 --interpolation gouraud --vertex-weight equal"
     " --sharpen 0 --antialias 1",
-    "--method ssvp --clusters 8 --oversampling 1 --w1 0.6 --w2 0.4 --cluster-metric printed"
-    " --cluster-place mean --second-weight printed --pipeline interleaved --interleave 4"
-    " --light-shadows cluster --antialias 1"};
+    "--method ssvp --clusters 8 --max-clusters 8 --oversampling 1 --w1 0.6 --w2 0.4 --cluster-metric printed"
+    " --cluster-place mean --next-bounce maps --second-weight printed --paraboloid 128"
+    " --pipeline interleaved --interleave 4"
+    " --light-shadows cluster --max-bounces 2 --antialias 1"};
 
 static vplResult setPreset(const Setting* s)
 {

@@ -50,7 +50,9 @@ vplAccumulation vplUsualPipeline(const vplRenderOptions* o)
 {
     const bool shared =
         o->method == VPL_METHOD_KELLER && (o->particles.count < 0 || o->particles.count >= 1000);
-    return shared || o->method == VPL_METHOD_SSVP ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    const bool gathers = o->method == VPL_METHOD_RADIOSITY && o->radiosity.gather > 0;
+    return shared || gathers || o->method == VPL_METHOD_SSVP ? VPL_ACCUMULATE_INTERLEAVED
+                                                             : VPL_ACCUMULATE_DEFERRED;
 }
 
 // ---- checks

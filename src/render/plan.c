@@ -77,17 +77,20 @@ static void refuse(vplPlan* p)
     }
 }
 
-// Each triangle is at least one patch. Measured on two cores: 0.1 us for a pair of sides of all pairs (room), and 1 to
+// Without groups each triangle is at least one patch. Measured on two cores: 0.1 us for a pair of sides of all pairs (room), and 1 to
 // 1.5 ms for a side by links (Sibenik, Sponza).
 static void refuseTime(const vplRunner* r, vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const double sides = g->triangleCount, ms = sides <= VPL_ALL_PAIRS ? 1e-4 * sides * sides : sides;
-    if (p->showsPatches && p->options.stop.budgetMs > 0 && ms > p->options.stop.budgetMs) {
+    const vplRadiosityOptions* o = &p->options.radiosity;
+    const bool groups =
+        o->groups != VPL_PATCH_GROUPS_OFF && o->patchSize == 0 && o->formFactors != VPL_FORM_FACTORS_INCENTRE;
+    if (p->showsPatches && !groups && p->options.stop.budgetMs > 0 && ms > p->options.stop.budgetMs) {
         snprintf(p->problem, sizeof p->problem,
                  "--budget %g: radiosity makes patches of all %d triangles, which takes about %.2g s at "
                  "least; use "
-                 "another method or more time",
+                 "--patch-groups auto, another method or more time",
                  p->options.stop.budgetMs, g->triangleCount, 1e-3 * ms);
     }
 }
@@ -208,7 +211,7 @@ static vplResult decideAll(vplRunner* r, vplPlan* p)
     listStages(p);
     TRY(vplDecideLightShadows(r, p));
     listStages(p); // shadows may have decided what clusters are for
-    return VPL_SUCCESS;
+    return r->foretells ? vplForetellClusters(r, p) : VPL_SUCCESS;
 }
 
 vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMachine* machine,

@@ -21,9 +21,21 @@ __attribute__((format(printf, 3, 4))) void vplDecide(vplPlan* plan, const char* 
 void vplDecideByOptions(const vplScene* scene, vplPlan* plan);
 
 // Decisions that need the scene's geometry, which the runner has, or results of stages, which it then runs.
+// The triangles that patches are drawn as, before they are cut at hanging vertices.
+static inline double vplPlan_DrawnPatches(const vplPlan* plan)
+{
+    return (double)plan->patches - plan->patchGroups + plan->groupedTriangles;
+}
+
 vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 
 // Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.
+// Resolves the number of bounces of SSVP, and counts their lights.
+void vplDecideBounces(const vplRunner* runner, vplPlan* plan);
+
+// For a reader of the plan: makes the clusters of SSVP, so that their number is known.
+vplResult vplForetellClusters(vplRunner* r, const vplPlan* p);
+
 vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 
 // Fills in counts and bytes: measured for stages that ran already, estimated for the others.

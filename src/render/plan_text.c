@@ -54,6 +54,10 @@ static void putCounts(Text* t, const vplPlan* p)
         if (p->longestEdge > 0) {
             put(t, ", edges up to %g m", p->longestEdge);
         }
+        if (p->patchGroups > 0) {
+            putRow(t, "groups");
+            put(t, "%d of the patches are groups of %d triangles", p->patchGroups, p->groupedTriangles);
+        }
         putRow(t, "sides");
         put(t, "%d of %d that light reaches", p->patchSides, 2 * p->patches);
         if (!p->linked) {

@@ -187,6 +187,9 @@ static uint64_t hashValue(const vplRun* run, const char* word, uint32_t build, u
     if (strcmp(word, "VIEW") == 0) { // posed
         return hashView(state, plan);
     }
+    if (strcmp(word, "GROUPS") == 0) { // light at their vertices is found where the camera sees them
+        return o->radiosity.groups == VPL_PATCH_GROUPS_ON ? hashView(state, plan) : state;
+    }
     if (strcmp(word, "PASS") == 0) {
         return hashNumber(hashNumber(state, run->pass), plan->progressive);
     }

@@ -62,9 +62,9 @@ static bool needsEmitterMaps(const vplPlan* p, char* why)
 static bool needsAreaLights(const vplPlan* p, char* why)
 {
     const bool documented = p->options.lighting == VPL_LIGHTING_DOCUMENTED;
-    const char* problem = !p->showsDirect && !p->compensates ? NOT_DIRECT
-                          : !p->hasAreaLights                ? "no material emits"
-                          : documented                       ? "documented lighting has no area lights"
+    const char* problem = !p->showsDirect && !p->compensates && !p->gathers ? NOT_DIRECT
+                          : !p->hasAreaLights                               ? "no material emits"
+                          : documented ? "documented lighting has no area lights"
                           : p->options.method == VPL_METHOD_KELLER
                               ? "virtual lights stand for area lights, too"
                               : NULL;
@@ -98,17 +98,19 @@ static bool needsFirstBounce(const vplPlan* p, char* why)
 
 static bool needsClusters(const vplPlan* p, char* why)
 {
-    const bool second = vplSsvpHasSecondBounce(p), sees = vplSsvpSees(p);
+    const bool second = vplSsvpHasSecondBounce(p) && vplSsvpSamplesMaps(p), sees = vplSsvpSees(p);
     return choose(why, p->showsVirtual && (sees || second || vplSsvpShowsClusters(p)),
                   sees ? "lights of a cluster share what it sees" : "the second bounce begins from clusters",
-                  p->showsVirtual ? "lights do not see by clusters, and there is no second bounce"
+                  p->showsVirtual ? "lights do not see by clusters, and no bounce begins from them"
                                   : "there are no virtual lights");
 }
 
 static bool needsParaboloids(const vplPlan* p, char* why)
 {
     return needsClusters(p, why) &&
-           because(why, true, "what each of %d clusters sees", p->options.ssvp.clusters);
+           because(why, true,
+                   vplSsvpSplits(p) ? "what each of %d to %d clusters sees" : "what each of %d clusters sees",
+                   p->options.ssvp.clusters, vplSsvpMostClusters(p));
 }
 
 static bool needsSecondBounce(const vplPlan* p, char* why)
@@ -120,8 +122,17 @@ static bool needsSecondBounce(const vplPlan* p, char* why)
 static bool needsSecondClusters(const vplPlan* p, char* why)
 {
     return needsSecondBounce(p, why) &&
-           choose(why, vplSsvpSees(p), "second-bounce lights of a cluster share what it sees",
-                  "lights do not see by clusters");
+           choose(why, vplSsvpSees(p) || (vplSsvpSamplesMaps(p) && vplSsvpHasFurtherBounces(p)),
+                  vplSsvpSees(p) ? "second-bounce lights of a cluster share what it sees"
+                                 : "the third bounce begins from clusters",
+                  "lights do not see by clusters, and no bounce begins from them");
+}
+
+static bool needsFurtherBounces(const vplPlan* p, char* why)
+{
+    const bool needed = p->showsVirtual && vplSsvpHasFurtherBounces(p);
+    return needed ? because(why, true, "light that was reflected 3 to %d times", p->options.maxBounces)
+                  : because(why, false, "there is no third bounce");
 }
 
 static bool needsClusteredLights(const vplPlan* p, char* why)
@@ -173,19 +184,25 @@ static bool needsVertexLight(const vplPlan* p, char* why)
     const vplShow show = p->options.output.show;
     const bool lit = show == VPL_SHOW_PICTURE || show == VPL_SHOW_INDIRECT;
     return choose(why, lit && p->options.radiosity.interpolation == VPL_INTERPOLATION_GOURAUD,
-                  "light is interpolated between the vertices of patches",
+                  p->gathers
+                      ? "rays of pixels meet light that is interpolated between the vertices of patches"
+                      : "light is interpolated between the vertices of patches",
                   "light of patches is shown as it is");
 }
 
 static bool needsPicture(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
-    if (o->antialias > 1) {
-        return because(why, true, "%dx%d pixels; at edges the mean of %d samples", o->width, o->height,
-                       o->antialias);
+    char rays[32] = "";
+    if (p->gathers) {
+        snprintf(rays, sizeof rays, ", %d rays from each", p->options.radiosity.gather);
     }
-    return because(why, true, "%dx%d pixels, %d sample%s each", o->width, o->height, o->supersample,
-                   o->supersample > 1 ? "s" : "");
+    if (o->antialias > 1) {
+        return because(why, true, "%dx%d pixels%s; at edges the mean of %d samples", o->width, o->height,
+                       rays, o->antialias);
+    }
+    return because(why, true, "%dx%d pixels, %d sample%s each%s", o->width, o->height, o->supersample,
+                   o->supersample > 1 ? "s" : "", rays);
 }
 
 static bool needsPaths(const vplPlan* p, char* why)
@@ -200,7 +217,9 @@ static bool needsPaths(const vplPlan* p, char* why)
 // ---- the table
 
 #define IN(stage) (1u << VPL_STAGE_##stage)
-#define SSVP_KEY  "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
+#define CHOICE_KEY                                                                                           \
+    "next-bounce size VIEW seed PASS min-distance max-bounces" // lights are chosen for what is seen
+#define SSVP_KEY "clusters max-clusters size VIEW oversampling cluster-metric w1 w2 coherence SHIFT"
 #define MAP_KEY                                                                                              \
     "paraboloid hemispheres cluster-place light-shadows show max-bounces second-bounce coherence SHIFT"
 #define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"
@@ -227,7 +246,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "method lighting particles grow-from reflectivity sampler bounce particle-geometry seed EMITTERS PASS PLACEMENT",
         needsParticles, vplMakeParticles, vplDestroyLightSet, .report = vplReportParticles},
     [VPL_STAGE_FIRST_BOUNCE] = {
-        "first bounce", 0.06, IN(GEOMETRY) | IN(REFLECTIVE_MAPS), "first-bounce oversampling coherence EMITTERS SHIFT",
+        "first bounce", 0.06, IN(GEOMETRY) | IN(REFLECTIVE_MAPS), "first-bounce oversampling coherence EMITTERS SHIFT " CHOICE_KEY,
         needsFirstBounce, vplMakeFirstBounce, vplDestroyBounce, .continues = true},
     [VPL_STAGE_CLUSTERS] = {
         "clusters", 0.07, IN(GEOMETRY) | IN(FIRST_BOUNCE), SSVP_KEY,
@@ -236,7 +255,8 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "paraboloid", 0.12, IN(GEOMETRY) | IN(FIRST_BOUNCE) | IN(CLUSTERS), MAP_KEY,
         needsParaboloids, vplMakeParaboloids, vplDestroyParaboloids, .continues = true},
     [VPL_STAGE_SECOND_BOUNCE] = {
-        "second bounce", 0.13, IN(GEOMETRY) | IN(CLUSTERS) | IN(PARABOLOIDS), "second-bounce second-weight SHIFT",
+        "second bounce", 0.13, IN(GEOMETRY) | IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS),
+        "second-bounce second-weight oversampling SHIFT " CHOICE_KEY,
         needsSecondBounce, vplMakeSecondBounce, vplDestroyBounce, .continues = true},
     [VPL_STAGE_SECOND_CLUSTERS] = {
         "second clusters", 0.14, IN(GEOMETRY) | IN(SECOND_BOUNCE), SSVP_KEY,
@@ -244,16 +264,20 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
     [VPL_STAGE_SECOND_PARABOLOIDS] = {
         "second paraboloid", 0.19, IN(GEOMETRY) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS), MAP_KEY,
         needsSecondClusters, vplMakeSecondParaboloids, vplDestroyParaboloids, .continues = true},
+    [VPL_STAGE_FURTHER_BOUNCES] = {
+        "further bounces", 0.2, IN(GEOMETRY) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) | IN(SECOND_PARABOLOIDS),
+        SSVP_KEY " " MAP_KEY " second-weight " CHOICE_KEY,
+        needsFurtherBounces, vplMakeFurtherBounces, vplDestroyFurtherBounces, .continues = true},
     [VPL_STAGE_CLUSTERED_LIGHTS] = {
         "list", 0.2, IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) |
-            IN(SECOND_PARABOLOIDS), "light-shadows",
+            IN(SECOND_PARABOLOIDS) | IN(FURTHER_BOUNCES), "light-shadows",
         needsClusteredLights, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
     [VPL_STAGE_VIRTUAL_LIGHTS] = {
         "virtual lights", 0.2, IN(GEOMETRY) | IN(NEAR_DISTANCE) | IN(PARTICLES) | IN(CLUSTERED_LIGHTS),
         "method lighting show show-index compensation min-distance particles grow-from PASS",
         needsVirtualLights, vplMakeVirtualLights, NULL, .report = vplReportVirtualLights},
     [VPL_STAGE_PATCHES] = {
-        "patches", 0.05, IN(GEOMETRY), "patch-size patches subdivisions patch-placement patch-cuts ADAPTIVE",
+        "patches", 0.05, IN(GEOMETRY), "patch-size patches subdivisions patch-placement patch-cuts patch-groups ADAPTIVE",
         needsPatches, vplMakePatches, vplDestroyPatches, .report = vplReportPatches},
     [VPL_STAGE_SIDES] = {
         "reachable sides", 0.1, IN(GEOMETRY) | IN(PATCHES), "form-factors camera seed",
@@ -265,17 +289,18 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), FACTOR_KEY,
         needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
     [VPL_STAGE_PATCH_LIGHT] = {
-        "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed EMITTERS",
+        "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed gather EMITTERS",
         needsPatchLight, vplMakePatchLight, NULL, .report = NULL},
     [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
         needsSolution, vplMakeSolution, NULL, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
-        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen",
+        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather GROUPS",
         needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
-            IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(SOLUTION) | IN(VERTEX_LIGHT), "ALWAYS",
+            IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(PATCH_LIGHT) | IN(SOLUTION) |
+            IN(VERTEX_LIGHT), "ALWAYS",
         needsPicture, vplMakePicture, vplDestroyImage, .report = NULL},
     [VPL_STAGE_PATHS] = {
         "paths", 1, IN(GEOMETRY), "ALWAYS",

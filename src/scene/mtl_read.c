@@ -2,6 +2,7 @@
 // Reads MTL files: Kd is the reflectance, Ke the emission. libvpl's surfaces have no other property.
 #include "math/scalar.h"
 #include "scene/obj.h"
+#include "scene/obj_number.h"
 
 typedef struct Mtl {
     vplText text;
@@ -10,6 +11,9 @@ typedef struct Mtl {
     bool started;      // a newmtl was read
     vplTally bright;   // Kd above 1
     vplTally repeated; // newmtl with a name that has a definition already
+    vplTally early;    // statements before the first newmtl
+    vplTally nameless; // newmtl without a name
+    vplTally unread;   // colours that are no colours
     vplUnknownWords unknown;
 } Mtl;
 
@@ -32,11 +36,13 @@ static vplResult beginMaterial(Mtl* m, vplWord line)
 {
     const vplWord name = vplRestOfLine(line);
     int number;
+    m->started = true;
+    m->current = -1;
     if (name.start == name.end) {
-        return vplText_FailWord(&m->text, name, "the name of a material");
+        vplTally_Add(&m->nameless, name.start);
+        return VPL_SUCCESS;
     }
     TRY(vplObjMaterials_Get(m->materials, name, &number));
-    m->started = true;
     m->current = number;
     if (m->materials->list[number].defined) {
         m->current = -1;
@@ -46,25 +52,38 @@ static vplResult beginMaterial(Mtl* m, vplWord line)
     return VPL_SUCCESS;
 }
 
-// Reads Kd or Ke: one number for all channels, or three. Colours that are not RGB have no effect.
-static vplResult readColour(Mtl* m, vplWord line, vplWord keyword)
+// Reads one number for all channels, or three. False if there is none, or one is out of range.
+static bool readNumbers(vplWord line, vplRgb* out)
+{
+    vplWord word;
+    float v[3];
+    int count = 0;
+    while (count < 3 && vplNextWord(&line, &word)) {
+        if (!vplReadNumber(word.start, word.end, &v[count]) ||
+            !(v[count] >= 0 && v[count] <= VPL_MAX_MAGNITUDE)) {
+            return false;
+        }
+        count++;
+    }
+    *out = count == 1 ? (vplRgb){v[0], v[0], v[0]} : (vplRgb){v[0], v[1], v[2]};
+    return count == 1 || count == 3;
+}
+
+// Reads Kd or Ke. A colour that is no RGB colour has no effect.
+static void readColour(Mtl* m, vplWord line, vplWord keyword)
 {
     const bool reflectance = vplWord_Is(keyword, "Kd");
     vplWord ahead = line, word;
-    float v[3];
-    int count = 0;
+    vplRgb colour;
     vplNextWord(&ahead, &word);
     if (vplWord_Is(word, "spectral") || vplWord_Is(word, "xyz")) {
         vplText_WarnOnce(&m->text, &m->unknown, word);
-        return VPL_SUCCESS;
+        return;
     }
-    ahead = line;
-    while (count < 3 && (vplNextWord(&ahead, &word) || count != 1)) {
-        TRY(vplText_Number(&m->text, &line, reflectance ? "a reflectance" : "a radiance", 0,
-                           VPL_MAX_MAGNITUDE, &v[count++]));
+    if (!readNumbers(line, &colour)) {
+        vplTally_Add(&m->unread, keyword.start);
+        return;
     }
-    TRY(vplText_RequireEnd(&m->text, line));
-    vplRgb colour = count == 1 ? (vplRgb){v[0], v[0], v[0]} : (vplRgb){v[0], v[1], v[2]};
     if (reflectance && (colour.r > 1 || colour.g > 1 || colour.b > 1)) {
         vplTally_Add(&m->bright, keyword.start);
         colour = (vplRgb){vplMinf(colour.r, 1), vplMinf(colour.g, 1), vplMinf(colour.b, 1)};
@@ -73,7 +92,6 @@ static vplResult readColour(Mtl* m, vplWord line, vplWord keyword)
         vplObjMaterial* material = &m->materials->list[m->current];
         *(reflectance ? &material->diffuse : &material->emission) = colour;
     }
-    return VPL_SUCCESS;
 }
 
 static vplResult readLine(Mtl* m, vplWord line)
@@ -86,12 +104,10 @@ static vplResult readLine(Mtl* m, vplWord line)
         return beginMaterial(m, line);
     }
     if (!m->started) {
-        return vplText_FailWord(&m->text, keyword, "newmtl");
-    }
-    if (vplWord_Is(keyword, "Kd") || vplWord_Is(keyword, "Ke")) {
-        return readColour(m, line, keyword);
-    }
-    if (!vplWord_IsAmong(keyword, ignored)) {
+        vplTally_Add(&m->early, keyword.start);
+    } else if (vplWord_Is(keyword, "Kd") || vplWord_Is(keyword, "Ke")) {
+        readColour(m, line, keyword);
+    } else if (!vplWord_IsAmong(keyword, ignored)) {
         vplText_WarnOnce(&m->text, &m->unknown, keyword);
     }
     return VPL_SUCCESS;
@@ -107,6 +123,11 @@ static vplResult readLines(Mtl* m)
     vplText_WarnTally(&m->text, &m->bright, "Kd above 1 is taken as 1", "lines");
     vplText_WarnTally(&m->text, &m->repeated, "this material has a definition already, which stays",
                       "materials");
+    vplText_WarnTally(&m->text, &m->early, "this line has no effect: it belongs to no material (newmtl)",
+                      "lines");
+    vplText_WarnTally(&m->text, &m->nameless, "this material has no name and is left out", "materials");
+    vplText_WarnTally(&m->text, &m->unread,
+                      "this line has no effect: it has neither one nor three numbers in [0, 1e+15]", "lines");
     return VPL_SUCCESS;
 }
 

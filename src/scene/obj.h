@@ -34,10 +34,13 @@ typedef struct vplObj {
     vplObjMaterials materials;
     vplNames libraries; // the files that mtllib named so far
     vplUnknownWords unknown;
+    vplTally thin, nameless; // faces of fewer than three corners; usemtl and mtllib without a name
     // From the first sweep.
     int64_t pointCount, normalCount;
     int64_t triangleCount; // an upper bound: triangles without area are left out later
-    bool hasNormals;       // a face refers to one
+    bool hasNormals;       // a face refers to one, or is in a smoothing group
+    bool smooths;          // faces are in smoothing groups, and none refers to a normal
+    int64_t group;         // the smoothing group of the last line (s) so far; 0: none
     // From the second sweep.
     vplVec3* points;          // without duplicates
     uint32_t differentPoints; // the number of points
@@ -50,7 +53,8 @@ typedef struct vplObjMesh {
     // Owns indices, materials and cornerNormal, for the scene. The scratch arena owns the rest.
     vplArena* arena;
     uint32_t* indices;
-    int* materials; // numbers in vplObjMaterials; -1: none
+    int* materials;  // numbers in vplObjMaterials; -1: none
+    int64_t* groups; // of triangles, until normals are known; NULL: none are smoothed
     int64_t triangleCount;
     int64_t emptyCount; // triangles without area, left out
     uint32_t vertexCount;
@@ -67,6 +71,20 @@ typedef struct vplObjMesh {
 vplResult vplObj_Count(vplObj* obj);
 vplResult vplObj_ReadPoints(vplObj* obj);
 vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh);
+
+// The smoothing group that a line (s) begins: a number, "on" (1) or "off" (0).
+int64_t vplObj_ReadGroup(vplWord line);
+
+// Makes the vertices of triangles in smoothing groups, whose indices are those of points so far. Normals are the mean
+// over the group's triangles at a point. (obj_smooth.c)
+vplResult vplObjMesh_Smooth(const vplObj* obj, vplObjMesh* mesh);
+
+// The vertex of a point and a normal.
+vplResult vplObjMesh_FindVertex(vplObjMesh* mesh, uint32_t point, vplVec3 normal, uint32_t* vertexOut);
+
+// Finds a triangle's unit normal from the order of its corners; false if it has no area. Computes in double, where no
+// triangle of floats underflows and where floats of similar size give an exact 0.
+bool vplObj_FindNormal(const vplVec3 corners[3], vplVec3* normalOut);
 
 // Adds a triangle, unless it has no area. A normal of -1 means none.
 vplResult vplObjMesh_AddTriangle(const vplObj* obj, vplObjMesh* mesh, const uint32_t points[3],

@@ -19,11 +19,16 @@ static vplResult countFace(vplObj* obj, vplWord line, vplWord keyword)
         obj->hasNormals = obj->hasNormals ||
                           (slash != NULL && memchr(slash + 1, '/', (size_t)(word.end - slash - 1)) != NULL);
     }
-    if (corners < 3 || corners > VPL_MAX_CORNERS) {
-        return vplText_FailAt(&obj->text, keyword.start, "found a face of %d corners, expected 3 to %d",
+    if (corners > VPL_MAX_CORNERS) {
+        return vplText_FailAt(&obj->text, keyword.start, "found a face of %d corners, expected at most %d",
                               corners, VPL_MAX_CORNERS);
     }
-    obj->triangleCount += corners - 2;
+    if (corners < 3) {
+        vplTally_Add(&obj->thin, keyword.start);
+    } else {
+        obj->triangleCount += corners - 2;
+        obj->smooths = obj->smooths || obj->group != 0;
+    }
     return VPL_SUCCESS;
 }
 
@@ -60,7 +65,8 @@ static vplResult readLibraries(vplObj* obj, vplWord line)
 {
     vplWord all = vplRestOfLine(line), name;
     if (all.start == all.end) {
-        return vplText_FailWord(&obj->text, all, "the name of an MTL file");
+        vplTally_Add(&obj->nameless, all.start);
+        return VPL_SUCCESS;
     }
     bool found = false, several = memchr(all.start, ' ', (size_t)(all.end - all.start)) != NULL;
     TRY(readLibrary(obj, all, !several, &found));
@@ -75,13 +81,16 @@ static vplResult noteMaterial(vplObj* obj, vplWord line)
 {
     int number;
     vplWord name = vplRestOfLine(line);
-    return name.start == name.end ? vplText_FailWord(&obj->text, name, "the name of a material")
-                                  : vplObjMaterials_Get(&obj->materials, name, &number);
+    if (name.start == name.end) {
+        vplTally_Add(&obj->nameless, name.start);
+        return VPL_SUCCESS;
+    }
+    return vplObjMaterials_Get(&obj->materials, name, &number);
 }
 
 static vplResult countLine(vplObj* obj, vplWord line)
 {
-    static const char* const ignored[] = {"vt", "g", "o", "s", NULL}; // irrelevant to a mesh
+    static const char* const ignored[] = {"vt", "g", "o", NULL}; // irrelevant to a mesh
     vplWord keyword;
     vplNextWord(&line, &keyword);
     if (vplWord_Is(keyword, "v")) {
@@ -92,6 +101,8 @@ static vplResult countLine(vplObj* obj, vplWord line)
         obj->normalCount++;
     } else if (vplWord_Is(keyword, "usemtl")) {
         return noteMaterial(obj, line);
+    } else if (vplWord_Is(keyword, "s")) {
+        obj->group = vplObj_ReadGroup(line);
     } else if (vplWord_Is(keyword, "mtllib")) {
         return readLibraries(obj, line);
     } else if (!vplWord_IsAmong(keyword, ignored)) {
@@ -108,6 +119,11 @@ vplResult vplObj_Count(vplObj* obj)
         TRY(vplText_Ask(&obj->text, line, at));
         TRY(countLine(obj, line));
     }
+    vplText_WarnTally(&obj->text, &obj->thin, "a face of fewer than three corners is left out", "faces");
+    vplText_WarnTally(&obj->text, &obj->nameless, "the name is missing: this line has no effect", "lines");
+    obj->smooths = obj->smooths && !obj->hasNormals;
+    obj->hasNormals = obj->hasNormals || obj->smooths;
+    obj->group = 0;
     if (obj->pointCount > VPL_MAX_TRIANGLES || obj->triangleCount > VPL_MAX_TRIANGLES) {
         return vplFail(obj->text.context, VPL_LIMIT,
                        "%s: %lld points (v) and %lld triangles, at most %d are allowed", obj->text.file,

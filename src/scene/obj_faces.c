@@ -116,6 +116,9 @@ static vplResult readFace(Sweep* s, vplWord line, const char* face)
     while (vplNextWord(&line, &word)) { // at most VPL_MAX_CORNERS: the first sweep checked
         TRY(readCorner(s, word, corners++));
     }
+    if (corners < 3) {
+        return VPL_SUCCESS; // the first sweep warned
+    }
     return corners == 3 ? addTriangle(s, 0, 1, 2) : addPolygon(s, corners, face);
 }
 
@@ -127,7 +130,12 @@ static vplResult readLine(Sweep* s, vplWord line)
         return readFace(s, line, keyword.start);
     }
     if (vplWord_Is(keyword, "usemtl")) {
-        return vplObjMaterials_Get(&s->obj->materials, vplRestOfLine(line), &s->material);
+        const vplWord name = vplRestOfLine(line);
+        return name.start == name.end ? VPL_SUCCESS
+                                      : vplObjMaterials_Get(&s->obj->materials, name, &s->material);
+    }
+    if (vplWord_Is(keyword, "s")) {
+        s->obj->group = vplObj_ReadGroup(line);
     }
     s->points += vplWord_Is(keyword, "v");
     s->normals += vplWord_Is(keyword, "vn");
@@ -144,7 +152,7 @@ static vplResult readLines(Sweep* s)
     }
     vplText_WarnTally(&s->obj->text, &s->crossing,
                       "the outline of this face crosses itself; its triangles may overlap", "faces");
-    return VPL_SUCCESS;
+    return s->obj->smooths ? vplObjMesh_Smooth(s->obj, s->mesh) : VPL_SUCCESS;
 }
 
 vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
@@ -158,6 +166,10 @@ vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
     mesh->indices = vplArena_Alloc(mesh->arena, triangles, 3 * sizeof *mesh->indices);
     mesh->materials = vplArena_Alloc(mesh->arena, triangles, sizeof *mesh->materials);
     TRY(vplArena_Check(mesh->arena));
+    if (obj->smooths) {
+        mesh->groups = vplArena_Alloc(obj->scratch, triangles, sizeof *mesh->groups);
+        TRY(vplArena_Check(obj->scratch));
+    }
     if (!obj->hasNormals) {
         mesh->vertexOf = vplArena_Alloc(obj->scratch, obj->differentPoints, sizeof *mesh->vertexOf);
         TRY(vplArena_Check(obj->scratch));

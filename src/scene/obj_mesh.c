@@ -8,14 +8,12 @@
 
 #include <string.h>
 
-// Finds the triangle's unit normal from the order of its corners; false if it has no area. Computes in double,
-// where no triangle of floats underflows and where floats of similar size give an exact 0.
-static bool findNormal(vplVec3 a, vplVec3 b, vplVec3 c, vplVec3* out)
+bool vplObj_FindNormal(const vplVec3 corners[3], vplVec3* out)
 {
     double u[3], v[3], n[3];
     for (int k = 0; k < 3; k++) {
-        u[k] = (double)vplComponent(b, k) - (double)vplComponent(a, k);
-        v[k] = (double)vplComponent(c, k) - (double)vplComponent(a, k);
+        u[k] = (double)vplComponent(corners[1], k) - (double)vplComponent(corners[0], k);
+        v[k] = (double)vplComponent(corners[2], k) - (double)vplComponent(corners[0], k);
     }
     vplCross3(u, v, n);
     double largest = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
@@ -53,8 +51,7 @@ static vplResult addCorner(vplObjMesh* mesh, uint32_t hash, uint32_t point, vplV
     return VPL_SUCCESS;
 }
 
-// The vertex of a point and a normal.
-static vplResult findCornerVertex(vplObjMesh* mesh, uint32_t point, vplVec3 normal, uint32_t* out)
+vplResult vplObjMesh_FindVertex(vplObjMesh* mesh, uint32_t point, vplVec3 normal, uint32_t* out)
 {
     uint32_t words[4] = {point};
     memcpy(words + 1, &normal, sizeof normal);
@@ -72,20 +69,27 @@ vplResult vplObjMesh_AddTriangle(const vplObj* obj, vplObjMesh* mesh, const uint
                                  const int64_t normals[3], int material)
 {
     vplVec3 flat;
-    const vplVec3* p = obj->points;
-    if (!findNormal(p[points[0]], p[points[1]], p[points[2]], &flat)) {
+    const vplVec3 at[3] = {obj->points[points[0]], obj->points[points[1]], obj->points[points[2]]};
+    if (!vplObj_FindNormal(at, &flat)) {
         mesh->emptyCount++;
         return VPL_SUCCESS;
     }
     uint32_t* index = mesh->indices + 3 * (size_t)mesh->triangleCount;
+    if (mesh->groups != NULL) {
+        mesh->groups[mesh->triangleCount] = obj->group;
+    }
     for (int k = 0; k < 3; k++) {
+        if (mesh->groups != NULL) {
+            index[k] = points[k];
+            continue;
+        }
         if (!obj->hasNormals) {
             index[k] = findPointVertex(mesh, points[k]);
             continue;
         }
         vplVec3 n = normals[k] >= 0 ? obj->normals[normals[k]] : flat;
         n = n.x == 0 && n.y == 0 && n.z == 0 ? flat : n;
-        TRY(findCornerVertex(mesh, points[k], n, &index[k]));
+        TRY(vplObjMesh_FindVertex(mesh, points[k], n, &index[k]));
     }
     mesh->materials[mesh->triangleCount++] = material;
     return VPL_SUCCESS;

@@ -56,6 +56,67 @@ static vplResult normalise(vplText* t)
     return VPL_SUCCESS;
 }
 
+// ---- UTF-16
+
+// The code unit at bytes[i], in the order of bytes that `big` says.
+static unsigned unitAt(const vplText* t, size_t i, bool big)
+{
+    const unsigned first = (unsigned char)t->bytes[i], second = (unsigned char)t->bytes[i + 1];
+    return big ? first << 8 | second : second << 8 | first;
+}
+
+// Appends a character as UTF-8.
+static size_t putUtf8(char* out, size_t at, unsigned c)
+{
+    if (c < 0x80) {
+        out[at++] = (char)c;
+    } else if (c < 0x800) {
+        out[at++] = (char)(0xC0 | c >> 6);
+        out[at++] = (char)(0x80 | (c & 0x3F));
+    } else {
+        if (c < 0x10000) {
+            out[at++] = (char)(0xE0 | c >> 12);
+        } else {
+            out[at++] = (char)(0xF0 | c >> 18);
+            out[at++] = (char)(0x80 | (c >> 12 & 0x3F));
+        }
+        out[at++] = (char)(0x80 | (c >> 6 & 0x3F));
+        out[at++] = (char)(0x80 | (c & 0x3F));
+    }
+    return at;
+}
+
+// Replaces UTF-16 text, as some programs of Windows write, by UTF-8. It begins with a byte order mark, or with a
+// character of ASCII.
+static vplResult decodeUtf16(vplText* t)
+{
+    const bool two = t->size >= 2,
+               mark = two && (unitAt(t, 0, true) == 0xFEFF || unitAt(t, 0, false) == 0xFEFF);
+    const bool big = two && (unitAt(t, 0, true) == 0xFEFF || (t->bytes[0] == 0 && t->bytes[1] > 0));
+    if (!two || (!mark && !big && !(t->bytes[0] > 0 && t->bytes[1] == 0))) {
+        return VPL_SUCCESS;
+    }
+    char* out = vplAlloc(t->context, t->size / 2 * 3 + 1, 1);
+    if (out == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    size_t length = 0;
+    for (size_t i = mark ? 2 : 0; i + 1 < t->size; i += 2) {
+        unsigned c = unitAt(t, i, big);
+        const unsigned low = c >> 10 == 0x36 && i + 3 < t->size ? unitAt(t, i + 2, big) : 0;
+        if (low >> 10 == 0x37) { // a surrogate pair
+            c = 0x10000 + ((c & 0x3FF) << 10) + (low & 0x3FF);
+            i += 2;
+        }
+        length = putUtf8(out, length, c);
+    }
+    out[length] = 0;
+    vplFree(t->context, t->bytes);
+    t->bytes = out;
+    t->size = length;
+    return VPL_SUCCESS;
+}
+
 vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut)
 {
     vplText text = {context, file, NULL, 0};
@@ -63,7 +124,8 @@ vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut)
     if (text.size >= 3 && memcmp(text.bytes, "\xEF\xBB\xBF", 3) == 0) { // a byte order mark
         memset(text.bytes, ' ', 3);
     }
-    const vplResult result = normalise(&text);
+    vplResult result = decodeUtf16(&text);
+    result = result == VPL_SUCCESS ? normalise(&text) : result;
     if (result != VPL_SUCCESS) {
         vplText_Close(&text);
         return result;

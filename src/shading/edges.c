@@ -126,12 +126,12 @@ void vplEdgeQueue_Flush(vplEdgeQueue* q)
     if (q->direct) {
         vplDirectIrradiance(s, &s->direct, &b->points, part, q->rays);
     }
-    if (q->indirect && s->compensation != NULL) {
+    if (q->indirect && vplFindsLightByRays(s)) {
         uint32_t pixels[VPL_LANES] = {0};
         for (int l = 0; l < q->count; l++) {
             pixels[l] = (uint32_t)q->y[l] << 16 | (uint32_t)q->x[l];
         }
-        vplAddCompensation(s, &b->points, pixels, part, q->rays);
+        vplAddLightOfRays(s, &b->points, pixels, part, q->rays);
     }
     vplStartSums(b, part);
     if (q->indirect) {

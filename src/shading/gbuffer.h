@@ -190,7 +190,7 @@ static inline void vplStartDirect(const vplShading* s, const vplTile* tile, int 
     vplAddAreaLights(s, &s->direct, points, part, &sums->shadowRays);
 }
 
-// Starts a block's sums with direct light and compensation, which are found once per pixel.
+// Starts a block's sums with direct light and the light of its own rays, which are found once per pixel.
 static inline void vplStartLight(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
 {
     vplTileSums* tileSums = tile->scratch;
@@ -198,9 +198,8 @@ static inline void vplStartLight(const vplShading* s, const vplTile* tile, int b
     if (!s->irradiance) {
         vplStartDirect(s, tile, block * VPL_LANES, &b->points, part);
     }
-    vplAddCompensationOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
-                              tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part,
-                              &tileSums->shadowRays);
+    vplAddLightOfRaysOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
+                             tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part, &tileSums->shadowRays);
     vplStartSums(b, part);
 }
 

@@ -110,11 +110,11 @@ typedef struct Class {
     int elements[(MAX_CHUNKS + 1) * VPL_LANES], count;
 } Class;
 
-// Tests whether shadows or compensation read the points' triangles and planes.
+// Tests whether shadows or rays of the points read the points' triangles and planes.
 static bool needsPoints(const vplShading* s)
 {
     const vplLightList* list = &s->lights;
-    return list->maps != NULL || list->castsRays || s->compensation != NULL ||
+    return list->maps != NULL || list->castsRays || vplFindsLightByRays(s) ||
            (s->smooth && list->clusters != NULL);
 }
 
@@ -163,8 +163,8 @@ static void collect(const Class* class, int* elements, int count, vplBlock* b)
     }
 }
 
-// Adds compensation to the light of the class: both are filtered.
-static void addCompensation(const Class* class, int side, const int* elements, vplBlock* b, int64_t* rays)
+// Adds what the points find by rays to the light of the class: both are filtered.
+static void addLightOfRays(const Class* class, int side, const int* elements, vplBlock* b, int64_t* rays)
 {
     const vplTile* tile = class->tile;
     uint32_t pixels[VPL_LANES];
@@ -175,7 +175,7 @@ static void addCompensation(const Class* class, int side, const int* elements, v
         const int y = tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE + lane / VPL_BLOCK_SIDE;
         pixels[l] = (uint32_t)y << 16 | (uint32_t)x;
     }
-    vplAddCompensation(class->shading, &b->points, pixels, part, rays);
+    vplAddLightOfRays(class->shading, &b->points, pixels, part, rays);
     for (int c = 0; c < 3; c++) {
         for (int l = 0; l < VPL_LANES; l++) {
             b->sums[c][l] += (double)part[c][l] / (side * side);
@@ -211,8 +211,8 @@ static void lightClass(Class* class, int x, int y)
         const int left = class->count - i * VPL_LANES;
         int* elements = class->elements + i * VPL_LANES;
         collect(class, elements, left < VPL_LANES ? left : VPL_LANES, &blocks[i]);
-        if (s->compensation != NULL) {
-            addCompensation(class, side, elements, &blocks[i], &tileSums->shadowRays);
+        if (vplFindsLightByRays(s)) {
+            addLightOfRays(class, side, elements, &blocks[i], &tileSums->shadowRays);
         }
     }
     to.culls = s->lights.columns[0] != NULL;

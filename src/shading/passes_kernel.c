@@ -47,7 +47,7 @@ void VPL_KERNEL(vplShadeDirect)(const void* uniforms, vplFragments* f)
     vplTileSums* sums = f->scratch;
     const vplPoints points = pointsOf(u, f);
     vplDirectIrradiance(u->shading, &u->shading->direct, &points, f->plane, &sums->shadowRays);
-    vplAddCompensationOfBlock(u->shading, &points, f->x, f->y, f->plane, &sums->shadowRays);
+    vplAddLightOfRaysOfBlock(u->shading, &points, f->x, f->y, f->plane, &sums->shadowRays);
     vplStoreTriangle(triangleOf(u, f), f);
 }
 

@@ -47,6 +47,19 @@ static vplResult checkAccumulation(const vplContext* context, const vplShadeDef*
     return checkClusters(context, def);
 }
 
+static vplResult checkGather(const vplContext* context, const vplShadeDef* def)
+{
+    const vplGatherDef* g = def->gather;
+    if (g != NULL && (g->rayCount < 1 || g->rayCount > VPL_MAX_NEAR_RAYS)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplGatherDef.rayCount is %d, must be in [1, %d]",
+                       g->rayCount, VPL_MAX_NEAR_RAYS);
+    }
+    if (g != NULL && def->lighting != VPL_LIGHTING_PHYSICAL) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "a final gather needs physical lighting");
+    }
+    return VPL_SUCCESS;
+}
+
 static vplResult checkDistance(const vplContext* context, const char* name, float distance)
 {
     return distance >= 0 && isfinite(distance)
@@ -75,6 +88,7 @@ vplResult vplShadeDef_Check(const vplContext* context, const vplView* view, cons
             "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
             c->rayCount, c->hitLights, VPL_MAX_NEAR_RAYS);
     }
+    TRY(checkGather(context, def));
     if (def->output == VPL_OUTPUT_SHADOW_FACTOR &&
         (def->emitterCount < 1 ||
          ((def->emitterMaps == NULL || def->emitterMaps[0] == NULL) && def->shadows[0].map == NULL))) {

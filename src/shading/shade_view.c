@@ -111,7 +111,8 @@ static const vplStrategy* chooseStrategy(const vplShadeDef* def)
     if (def->accumulation < VPL_ACCUMULATE_DEFERRED && def->output == VPL_OUTPUT_RADIANCE) {
         return &vplPassesStrategy;
     }
-    if (def->lightCount > 0 && def->accumulation == VPL_ACCUMULATE_INTERLEAVED && def->interleave > 1) {
+    if ((def->lightCount > 0 || def->gather != NULL) && def->accumulation == VPL_ACCUMULATE_INTERLEAVED &&
+        def->interleave > 1) {
         return &vplInterleavedStrategy;
     }
     if (def->lightCount > 0 && def->accumulation == VPL_ACCUMULATE_LIGHTCUTS) {
@@ -140,6 +141,7 @@ static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats
     TRY(makeObjects(s));
     TRY(vplDirectLight_Open(&s->direct, s->arena, s->def->lighting));
     TRY(vplCompensator_Open(s));
+    TRY(vplGather_Open(s));
     TRY(strategy->open(s, &framebuffer));
     TRY(draw(s, strategy, &framebuffer, &stats->raster));
     return strategy->finish != NULL ? strategy->finish(s, stats) : VPL_SUCCESS;

@@ -64,6 +64,7 @@ float vplInverseSquare(float distance);
 
 struct vplStrategy;
 struct vplCompensator;
+struct vplGather;
 struct vplObjectUniforms;
 
 typedef struct vplShading {
@@ -82,6 +83,7 @@ typedef struct vplShading {
     vplMesh* meshes;                     // one per object
     struct vplObjectUniforms* objects;   // one per object
     struct vplCompensator* compensation; // NULL: light taken by the clamp is lost
+    struct vplGather* gather;            // NULL: no final gather
     void* state;                         // of the strategy
     vplTileFcn* tileTask;                // of the strategy: reads the G-buffer
     int64_t* shadowRays;                 // counted atomically: sums of integers do not depend on the order
@@ -252,16 +254,44 @@ vplResult vplCompensator_Open(vplShading* shading);
 void vplAddCompensation(const vplShading* shading, const vplPoints* points, const uint32_t pixels[VPL_LANES],
                         float irradiance[3][VPL_LANES], int64_t* rays);
 
-// The same for the block of 4 x 4 pixels from (x, y) on, if the render has a compensation.
-static inline void vplAddCompensationOfBlock(const vplShading* s, const vplPoints* points, int x, int y,
-                                             float irradiance[3][VPL_LANES], int64_t* rays)
+// ---- final gather
+
+// Makes shading->gather in the arena, if the def asks for it.
+vplResult vplGather_Open(vplShading* shading);
+
+// Adds the light that rays from the points meet. `pixels` are y << 16 | x.
+void vplAddGathered(const vplShading* shading, const vplPoints* points, const uint32_t pixels[VPL_LANES],
+                    float irradiance[3][VPL_LANES], int64_t* rays);
+
+// ---- indirect light that each point finds by its own rays: compensation and final gather
+
+static inline bool vplFindsLightByRays(const vplShading* s)
+{
+    return s->compensation != NULL || s->gather != NULL;
+}
+
+static inline void vplAddLightOfRays(const vplShading* s, const vplPoints* points,
+                                     const uint32_t pixels[VPL_LANES], float irradiance[3][VPL_LANES],
+                                     int64_t* rays)
+{
+    if (s->compensation != NULL) {
+        vplAddCompensation(s, points, pixels, irradiance, rays);
+    }
+    if (s->gather != NULL) {
+        vplAddGathered(s, points, pixels, irradiance, rays);
+    }
+}
+
+// The same for the block of 4 x 4 pixels from (x, y) on, if the render casts such rays.
+static inline void vplAddLightOfRaysOfBlock(const vplShading* s, const vplPoints* points, int x, int y,
+                                            float irradiance[3][VPL_LANES], int64_t* rays)
 {
     uint32_t pixels[VPL_LANES];
-    if (s->compensation != NULL) {
+    if (vplFindsLightByRays(s)) {
         for (int l = 0; l < VPL_LANES; l++) {
             pixels[l] = (uint32_t)(y + l / VPL_BLOCK_SIDE) << 16 | (uint32_t)(x + l % VPL_BLOCK_SIDE);
         }
-        vplAddCompensation(s, points, pixels, irradiance, rays);
+        vplAddLightOfRays(s, points, pixels, irradiance, rays);
     }
 }
 

@@ -21,7 +21,7 @@ interrupted() {
 }
 
 # ---- interrupts
-for method in "path --spp 100000" "keller --particles 20 --passes 100000" "ssvp --first-bounce 8 --second-bounce 8 --passes 100000"; do
+for method in "path --spp 100000" "keller --particles 20 --passes 100000" "ssvp --first-bounce 8 --second-bounce 8 --oversampling 1 --max-clusters 8 --passes 100000"; do
     word=${method%% *}
     interrupted "InterruptEndsWithOne_$word" none --method $method -o "$out/i.pfm" --stats "$out/i.json"
     check "InterruptSaysWhatItWrote_$word" grep -Eq \

@@ -130,7 +130,7 @@ check HelpHasManyOptions test "$(wc -l <"$scratch/table")" -ge 60
 tr -s " \n" " " <"$scratch/stdout" >"$scratch/flat"
 check HelpNamesDefaults grep -q "cube shadow map; default 1024" "$scratch/flat"
 check HelpNamesMethods grep -q "ask for; default auto \[path\]" "$scratch/flat"
-check HelpNamesPipelines grep -q "default auto \[instant-radiosity, keller, ssvp\] \[--pipeline interleaved\]" "$scratch/flat"
+check HelpNamesPipelines grep -q "default auto \[instant-radiosity, keller, ssvp, radiosity\] \[--pipeline interleaved\]" "$scratch/flat"
 equals HelpHasSubjects "$(grep -c '^// ---- ' include/vpl/options.def)" "$(grep -c '^[A-Z]' "$scratch/stdout")"
 succeeds HelpOfASubject "$vpl" help options ssvp
 equals HelpOfASubjectHasItsOptions "SSVP --clusters" "$(sed -n '2p; 3s/^  \(--[a-z]*\).*/\1/p' "$scratch/stdout" | tr '\n' ' ' | sed 's/ $//')"

@@ -206,6 +206,9 @@ static void ssvpPrinted(vplRenderOptions* o)
     o->ssvp.place = VPL_CLUSTER_PLACE_MEAN;
     o->ssvp.secondWeight = VPL_SECOND_WEIGHT_PRINTED;
     o->ssvp.oversampling = 1;
+    o->ssvp.nextBounce = VPL_NEXT_BOUNCE_MAPS;
+    o->ssvp.paraboloidSize = 128;
+    o->maxBounces = 2;
 }
 
 static void ssvpGather(vplRenderOptions* o)

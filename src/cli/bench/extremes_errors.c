@@ -12,7 +12,9 @@ const Method EXTREME_METHODS[METHODS] = {
     {"interleaved",
      "--method keller --particles 1000 --pipeline interleaved --interleave 4 --light-shadows ray"},
     {"path", "--method path --spp 4 --pixel centre --max-bounces 8"},
-    {"ssvp", "--method ssvp --rsm-size 256"},
+    // As the document has it. By default rounding exchanges chosen lights: the room at other scales differs by 3 %.
+    {"ssvp",
+     "--method ssvp --rsm-size 256 --next-bounce maps --max-bounces 2 --max-clusters 8 --paraboloid 128"},
     {"radiosity", "--method radiosity --patches 200 --iterations 2000 --residual 1e-6"},
 };
 

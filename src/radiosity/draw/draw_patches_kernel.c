@@ -12,12 +12,12 @@ static const float INVERSE_PI = 0.318309886f;
 // The colour of a flat patch, or the factor of interpolated values. An interpolated side that light was not
 // found to reach shows the values at its corners, which come from its neighbours: a sliver of floor at the
 // foot of a box, which rays missed, is then not drawn black.
-static vplRgb factorOf(const vplPatchFace* u, int patch, int side)
+static vplRgb factorOf(const vplPatchFace* u, int triangle, int side)
 {
     const vplPatchDraw* d = u->draw;
     vplRgb factor = {1, 1, 1};
     if (d->reflect) {
-        factor = vplRgbScale(INVERSE_PI, vplReflectanceOf(d->mesh->sides, patch, side));
+        factor = vplRgbScale(INVERSE_PI, vplReflectanceOf(d->mesh->sides, triangle, side));
     }
     if (d->vertexValues != NULL) {
         return factor;
@@ -110,7 +110,7 @@ void VPL_KERNEL(vplShadePatch)(const void* uniforms, vplFragments* f)
     const vplPatchMesh* mesh = u->draw->mesh;
     const int patch = mesh->patchOf[f->primitive];
     const int side = vplSideOf(mesh->sides, patch, u->face);
-    const vplRgb factor = factorOf(u, patch, side);
+    const vplRgb factor = factorOf(u, mesh->triangleOf[f->primitive], side);
     if (u->draw->vertexValues != NULL) {
         interpolate(u, f, factor);
     } else {

@@ -92,7 +92,7 @@ static vplResult addTriangle(Baker* b, int triangle, int face)
     if (side < 0 && face == 1) {
         return VPL_SUCCESS;
     }
-    const vplRgb reflectance = vplReflectanceOf(m->sides, m->patchOf[triangle], side);
+    const vplRgb reflectance = vplReflectanceOf(m->sides, m->triangleOf[triangle], side);
     PlyFace out = {.count = 3};
     for (int k = 0; k < 3; k++) {
         const int corner = face == 0 ? k : 2 - k;

@@ -2,6 +2,7 @@
 // Sides in blocks of sixteen, and the points at which they are sampled.
 #include "base/context.h"
 #include "base/rng.h"
+#include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/sides/side.h"
@@ -10,6 +11,17 @@
 enum { SAMPLE_STREAM = 0x46460000 };
 
 // ---- samples
+
+static void setSample(const vplFactorWork* work, int p, int lane, const vplSidePoint* point,
+                      vplFactorSamples* samples)
+{
+    const vplRay ray = vplPatchSides_Leave(work->sides, point, point->normal);
+    vplSetLane(samples->at[p], lane, point->at);
+    vplSetLane(samples->normal[p], lane, point->normal);
+    vplSetLane(samples->origin[p], lane, ray.origin);
+    samples->skipFirst[p][lane] = ray.skip.first;
+    samples->skipCount[p][lane] = ray.skip.count;
+}
 
 // Sixteen strata of equal area: the cells of a side whose cells are all open.
 static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorSamples* samples)
@@ -22,9 +34,9 @@ static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorS
         const int stratum = p % 4 * 4 + p / 4;
         const float place = ((float)stratum + vplUnitFloat(r.v[0])) * (float)open / VPL_FACTOR_SAMPLES;
         const int cell = vplPatchSide_OpenCell(side, vplMini((int)place, open - 1));
-        const vplVec3 at = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
-        vplSetLane(samples->at[p], lane, at);
-        vplSetLane(samples->origin[p], lane, vplPatchSide_Leave(work->sides, side, at, side->normal).origin);
+        const vplSidePoint point =
+            vplPatchSide_SampleCell(work->sides, side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
+        setSample(work, p, lane, &point, samples);
     }
 }
 
@@ -71,6 +83,20 @@ static void fillPart(const vplPatchSide* side, int lane, vplFactorBlock* block)
 
 // ---- blocks
 
+// Sets the sphere around a group.
+static void fillGroup(const vplPatches* patches, const vplPatchSide* side, int lane, vplFactorBlock* block)
+{
+    const vplPatchParts parts = vplPatches_GetParts(patches, side->patch);
+    block->groups |= 1u << lane;
+    block->radius2[lane] = 0;
+    vplSetLane(block->centre, lane, side->incentre);
+    for (int k = 0; k < 3 * parts.count; k++) {
+        const vplVec3 corner = patches->positions[patches->nodes[parts.nodes[k / 3]].corners[k % 3]],
+                      way = vplSub(corner, side->incentre);
+        block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
+    }
+}
+
 static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block)
 {
     const vplPatchSide* side = &work->sides->sides[index];
@@ -86,12 +112,13 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
         const vplVec3 way = vplSub(side->corners[c], centre);
         block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
     }
-    const vplRay ray = vplPatchSide_Leave(work->sides, side, side->incentre, side->normal);
-    block->skipFirst[lane] = ray.skip.first;
-    block->skipCount[lane] = ray.skip.count;
+    if (vplPatches_IsGroup(work->sides->patches, side->patch)) {
+        fillGroup(work->sides->patches, side, lane, block);
+    }
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {
-        vplSetLane(block->samples.at[0], lane, side->incentre);
-        vplSetLane(block->samples.origin[0], lane, ray.origin);
+        const vplSidePoint middle = {side->incentre, side->normal,
+                                     vplPatches_TriangleOf(work->sides->patches, side->patch)};
+        setSample(work, 0, lane, &middle, &block->samples);
         const vplVec3 cross =
             vplCross(vplSub(side->corners[1], side->corners[0]), vplSub(side->corners[2], side->corners[0]));
         block->area[lane] = 0.5f * (float)vplCrossLength(cross);

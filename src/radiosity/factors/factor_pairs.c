@@ -5,6 +5,7 @@
 // estimate the visible fraction.
 #include "base/rng.h"
 #include "geometry/bvh.h"
+#include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/factors/analytic.h"
@@ -49,6 +50,15 @@ typedef struct Tile {
 
 // ---- before rays
 
+static uint32_t usedLanes(const vplFactorBlock* block)
+{
+    uint32_t used = 0;
+    for (int l = 0; l < LANES; l++) {
+        used |= (uint32_t)(block->area[l] > 0) << l;
+    }
+    return used;
+}
+
 // Corners this near to a plane count as in it: eight times the rounding of the blocks' largest coordinate. Sides
 // in one plane do not exchange light.
 static float toleranceOf(const vplFactorBlock* a, const vplFactorBlock* b)
@@ -61,18 +71,98 @@ static float toleranceOf(const vplFactorBlock* a, const vplFactorBlock* b)
     return largest * 0x1p-21f;
 }
 
+// The mean of cos cos / (pi r^2) over the samples of side i of the row and those of each side of the column: for groups,
+// which have no integral.
+static void sampledMeans(const Tile* tile, int i, float meanOut[LANES])
+{
+    const vplFactorSamples *from = &tile->a->samples, *to = &tile->b->samples;
+    float sum[LANES] = {0};
+    for (int k = 0; k < VPL_FACTOR_SAMPLES; k++) {
+        const float point[3] = {from->at[k][0][i], from->at[k][1][i], from->at[k][2][i]};
+        const float normal[3] = {from->normal[k][0][i], from->normal[k][1][i], from->normal[k][2][i]};
+        const int other = (5 * k + i) % VPL_FACTOR_SAMPLES;
+        float term[LANES], direction[3][LANES];
+        tile->shared->work->kernels->pointTerms(point, normal, to->at[other], to->normal[other], term,
+                                                direction);
+        for (int l = 0; l < LANES; l++) {
+            sum[l] += term[l] / VPL_FACTOR_SAMPLES;
+        }
+    }
+    memcpy(meanOut, sum, sizeof sum);
+}
+
+static vplSidePoint sampleOf(const vplFactorSamples* samples, int k, int lane)
+{
+    return (vplSidePoint){
+        .at = {samples->at[k][0][lane], samples->at[k][1][lane], samples->at[k][2][lane]},
+        .normal = {samples->normal[k][0][lane], samples->normal[k][1][lane], samples->normal[k][2][lane]}};
+}
+
+// The mean of cos cos / (pi r^2) of a group and a triangle beside it: closed forms from the group's samples.
+static float meanBeside(const vplFactorSamples* group, int lane, const vplPatchSide* triangle)
+{
+    const vplTriangleCorners corners = {{triangle->corners[0], triangle->corners[1], triangle->corners[2]}};
+    double sum = 0;
+    for (int k = 0; k < VPL_FACTOR_SAMPLES; k++) {
+        const vplSidePoint p = sampleOf(group, k, lane);
+        sum += vplPointFormFactor(p.at, p.normal, triangle->corners);
+    }
+    return vplClampToFloat(sum / (VPL_FACTOR_SAMPLES * vplTriangle_Area(&corners)));
+}
+
+// That of two groups beside each other: all pairs of their samples.
+static float meanOfGroups(const Tile* tile, int i, int l)
+{
+    double sum = 0;
+    for (int k = 0; k < VPL_FACTOR_SAMPLES; k++) {
+        const vplSidePoint p = sampleOf(&tile->a->samples, k, i);
+        for (int j = 0; j < VPL_FACTOR_SAMPLES; j++) {
+            const vplSidePoint q = sampleOf(&tile->b->samples, j, l);
+            const vplVec3 way = vplSub(q.at, p.at);
+            const double square = (double)vplDot(way, way), a = (double)vplDot(way, p.normal),
+                         b = -(double)vplDot(way, q.normal);
+            sum += a > 0 && b > 0 ? a / square * (b / square) / VPL_PI : 0;
+        }
+    }
+    return vplClampToFloat(sum / (VPL_FACTOR_SAMPLES * VPL_FACTOR_SAMPLES));
+}
+
+static float meanBesideGroup(const Tile* tile, int i, int l)
+{
+    const vplPatchSide* sides = tile->shared->work->sides->sides;
+    return !(tile->a->groups >> i & 1)   ? meanBeside(&tile->b->samples, l, &sides[tile->row * LANES + i])
+           : !(tile->b->groups >> l & 1) ? meanBeside(&tile->a->samples, i, &sides[tile->column * LANES + l])
+                                         : meanOfGroups(tile, i, l);
+}
+
 // Finds the pairs of row i that exchange light and, if analytic, how much without occluders.
 static void estimateRow(Tile* tile, int i)
 {
     const vplFactorWork* work = tile->shared->work;
     vplFactorEstimate estimate;
     work->kernels->estimateFactors(tile->a, i, tile->b, tile->tolerance, NEAR * NEAR, &estimate);
-    tile->pairs[i] = estimate.facing & (tile->row == tile->column ? 0xfffeu << i & 0xffffu : 0xffffu);
+    const uint32_t used = tile->a->area[i] > 0 ? usedLanes(tile->b) : 0,
+                   groups = tile->a->groups >> i & 1 ? used : tile->b->groups & used;
+    tile->pairs[i] =
+        (estimate.facing | groups) & (tile->row == tile->column ? 0xfffeu << i & 0xffffu : 0xffffu);
     if (!work->def.analytic || tile->pairs[i] == 0) {
         return;
     }
-    memcpy(tile->exact[i], estimate.mean, sizeof estimate.mean);
-    for (uint32_t left = tile->pairs[i] & estimate.near; left != 0; left &= left - 1) {
+    if ((tile->pairs[i] & ~groups) != 0) {
+        memcpy(tile->exact[i], estimate.mean, sizeof estimate.mean);
+    }
+    if ((tile->pairs[i] & groups) != 0) {
+        float means[LANES];
+        sampledMeans(tile, i, means);
+        for (int l = 0; l < LANES; l++) {
+            tile->exact[i][l] = groups >> l & 1 ? means[l] : tile->exact[i][l];
+        }
+        for (uint32_t left = tile->pairs[i] & estimate.near & groups; left != 0; left &= left - 1) {
+            const int l = __builtin_ctz(left);
+            tile->exact[i][l] = meanBesideGroup(tile, i, l);
+        }
+    }
+    for (uint32_t left = tile->pairs[i] & estimate.near & ~groups; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
         tile->exact[i][l] = vplSideExchange(&work->sides->sides[tile->row * LANES + i],
                                             &work->sides->sides[tile->column * LANES + l]);
@@ -104,22 +194,22 @@ static uint32_t findBlocked(const Tile* tile, const vplRayPacket* packet)
 
 // Joins sample `index` of side i of the row with one point of each side of the column that `asked` names.
 static void joinPoints(Tile* tile, int i, uint32_t asked, const vplFactorSamples* from, int index,
-                       const float to[3][LANES])
+                       const vplFactorSamples* to, int other)
 {
-    const vplFactorBlock* a = tile->a;
     const float point[3] = {from->at[index][0][i], from->at[index][1][i], from->at[index][2][i]};
-    const float normal[3] = {a->normal[0][i], a->normal[1][i], a->normal[2][i]};
+    const float normal[3] = {from->normal[index][0][i], from->normal[index][1][i], from->normal[index][2][i]};
     float term[LANES];
     vplRayPacket packet;
-    tile->shared->work->kernels->pointTerms(point, normal, to, tile->b->normal, term, packet.direction);
+    tile->shared->work->kernels->pointTerms(point, normal, to->at[other], to->normal[other], term,
+                                            packet.direction);
     packet.active = 0;
     for (int l = 0; l < LANES; l++) {
         packet.active |= (uint32_t)(term[l] > 0) << l;
         packet.origin[0][l] = from->origin[index][0][i];
         packet.origin[1][l] = from->origin[index][1][i];
         packet.origin[2][l] = from->origin[index][2][i];
-        packet.skipFirst[l] = a->skipFirst[i];
-        packet.skipCount[l] = a->skipCount[i];
+        packet.skipFirst[l] = from->skipFirst[index][i];
+        packet.skipCount[l] = from->skipCount[index][i];
     }
     packet.active &= asked;
     if (packet.active == 0) {
@@ -163,7 +253,7 @@ static void joinChunk(Tile* tile, int chunk, const vplFactorSamples* from, const
             asked ? vplRandomAt(work->def.seed, PAIR_STREAM + (uint32_t)chunk, index) : (vplRandom4){{0}};
         for (uint32_t k = 0; k < VPL_FACTOR_SAMPLES && asked != 0; k++) {
             const int p = (int)((r.v[0] + k) % VPL_FACTOR_SAMPLES);
-            joinPoints(tile, i, asked, from, p, to->at[(r.v[1] + 5 * k) % VPL_FACTOR_SAMPLES]);
+            joinPoints(tile, i, asked, from, p, to, (int)((r.v[1] + 5 * k) % VPL_FACTOR_SAMPLES));
             if ((int)k + 1 >= samples) {
                 asked = work->def.analytic ? notJoined(tile, i) : 0;
             }
@@ -177,7 +267,7 @@ static void joinAll(Tile* tile, int worker)
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {
         for (int i = 0; i < LANES; i++) {
             if (tile->pairs[i] != 0) {
-                joinPoints(tile, i, tile->pairs[i], &tile->a->samples, 0, tile->b->samples.at[0]);
+                joinPoints(tile, i, tile->pairs[i], &tile->a->samples, 0, &tile->b->samples, 0);
             }
         }
         return;
@@ -208,7 +298,7 @@ static void computeTile(Tile* tile, int worker)
         return;
     }
     tile->blockers.count = -1;
-    if (!shared->work->def.bruteForce) {
+    if (!shared->work->def.bruteForce && (tile->a->groups | tile->b->groups) == 0) {
         vplBlockers_Find(shared->geometry, tile->a, tile->b, tile->tolerance, &tile->blockers);
     }
     if (tile->blockers.count != 0 || !shared->work->def.analytic) {

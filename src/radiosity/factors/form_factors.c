@@ -28,6 +28,13 @@ static vplResult checkDef(const vplPatchSides* sides, const vplFormFactorDef* de
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplFormFactorDef.rowSums is %d, must be a vplRowSums",
                        (int)def->rowSums);
     }
+    if (sides->patches->groupCount > 0 && (def->kind == VPL_FORM_FACTORS_INCENTRE || !def->analytic)) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "%d patches are groups of triangles, which have no incentre and whose unoccluded form factors "
+            "are not those of the samples alone: set vplPatchDef.group to false",
+            sides->patches->groupCount);
+    }
     const int64_t bytes = (int64_t)sides->count * sides->count * (int64_t)sizeof(float);
     if (bytes > VPL_MAX_FORM_FACTOR_BYTES) {
         return vplFail(

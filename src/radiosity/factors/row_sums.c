@@ -6,6 +6,7 @@
 // root of the sum).
 #include "math/scalar.h"
 #include "radiosity/factors/form_factors.h"
+#include "radiosity/sides/side.h"
 
 // Rounds end when no scale changes by more than this or, since some matrices cannot be normalised, after so
 // many.
@@ -18,6 +19,7 @@ static const double MARGIN = 1 - 0x1p-22;
 typedef struct Scaling {
     const vplFactorWork* work;
     double *scale, *sum; // per row: s_i, and the sum of F_ij s_j
+    float* target;       // the wanted sum of each row; NULL: 1
 } Scaling;
 
 static void sumRow(void* data, int row, int worker)
@@ -44,7 +46,9 @@ static double improve(Scaling* s, bool clamp)
     for (int i = 0; i < s->work->count; i++) {
         const double sum = s->scale[i] * s->sum[i];
         if (sum > 0) {
-            const double before = s->scale[i], wanted = before / sqrt(sum);
+            const double before = s->scale[i], wanted = s->target != NULL
+                                                            ? before * sqrt((double)s->target[i] / sum)
+                                                            : before / sqrt(sum);
             s->scale[i] = clamp && wanted > 1 ? 1 : wanted;
             const double step = fabs(s->scale[i] / before - 1);
             largest = step > largest ? step : largest;
@@ -95,6 +99,12 @@ vplResult vplFactorWork_CorrectRows(vplFactorWork* work)
     }
     const bool clamp = def->rowSums == VPL_ROW_SUMS_CLAMP ||
                        (def->rowSums == VPL_ROW_SUMS_USUAL && def->kind == VPL_FORM_FACTORS_MONTE_CARLO);
+    if (def->rowSums == VPL_ROW_SUMS_USUAL && work->sides->patches->groupCount > 0) {
+        s.target = vplArena_Alloc(work->scratch, count, sizeof *s.target);
+        TRY(vplArena_Check(work->scratch));
+        TRY(vplPatchSides_FindHitShares(work->sides, def->seed, s.target, &work->factors->rays));
+        return scaleRows(&s, false);
+    }
     if (def->rowSums == VPL_ROW_SUMS_NORMALISE || (clamp && most > MARGIN)) {
         return scaleRows(&s, clamp);
     }

@@ -34,7 +34,7 @@ static void judge(Count* c, const vplLinkPair* pair)
 {
     const vplLinkNode *nodes = c->work.tree->nodes, *p = &nodes[pair->p], *q = &nodes[pair->q];
     if (pair->p == pair->q) {
-        for (int k = 0; k < 3 && !p->flat; k++) {
+        for (int k = 0; k < 3 && !p->flat && p->children >= 0; k++) {
             push(c, p->children + k % 2, p->children + (k + 1) / 2, &(vplLinkAnswer){.visible = false});
         }
         return;

@@ -93,7 +93,7 @@ static bool isBehind(const Pair* pair, const vplLinkNode* node, const vplLinkNod
     }
     const vplVec3 n = firstSide(pair, plane)->normal, from = firstSide(pair, plane)->corners[0];
     float most = -INFINITY;
-    if (node->count == 1) {
+    if (node->count == 1 && !node->group) {
         for (int k = 0; k < 3; k++) {
             most = fmaxf(most, vplDot(n, vplSub(firstSide(pair, node)->corners[k], from)));
         }
@@ -169,9 +169,14 @@ static vplLinkVerdict divideWorse(const Pair* pair, double errorP, double errorQ
     return errorP > errorQ ? VPL_LINK_DIVIDE_P : errorQ > errorP ? VPL_LINK_DIVIDE_Q : divideLarger(pair);
 }
 
+static bool isTurned(const vplLinkNode* node)
+{
+    return node->cosTurn < TURNED;
+}
+
 static vplLinkVerdict divideTurned(const Pair* pair)
 {
-    const bool p = pair->p->cosSpread < TURNED, q = pair->q->cosSpread < TURNED;
+    const bool p = isTurned(pair->p), q = isTurned(pair->q);
     return p && q ? divideLarger(pair) : p ? VPL_LINK_DIVIDE_P : VPL_LINK_DIVIDE_Q;
 }
 
@@ -264,7 +269,8 @@ static void measureSides(const Pair* pair, const vplLinkTerms* terms)
     cast(pair, terms, 0, clear ? 0 : vplMini(pair->work->def->samples, VPL_MOST_LINK_RAYS), &seen);
     Measure m = measureOf(pair, terms);
     // Neighbours on a curved surface are near, but exchange next to nothing.
-    if (isNear(pair) && pair->sent * m.mean > TINY * pair->work->def->error) {
+    if (!pair->p->group && !pair->q->group && isNear(pair) &&
+        pair->sent * m.mean > TINY * pair->work->def->error) {
         m.mean = (double)vplSideExchange(firstSide(pair, pair->p), firstSide(pair, pair->q));
     }
     m.mean *= clear ? 1 : seen.open > 0 ? seen.visible / seen.open : 0;
@@ -336,7 +342,7 @@ vplLinkAnswer vplJudgePair(const vplLinkWork* work, const vplLinkPair* ids)
         return answer;
     }
     const double bound = factorBound(&pair);
-    const bool turned = p->cosSpread < TURNED || q->cosSpread < TURNED;
+    const bool turned = isTurned(p) || isTurned(q);
     if (!(bound > 0)) {
         return answer;
     }

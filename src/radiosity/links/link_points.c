@@ -45,14 +45,14 @@ static void drawPoints(const vplLinkWork* work, int node, vplLinkPoints* out)
         const double into = fmin((target - tree->areaUpTo[position]) / (double)side->area, 1);
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
-        const vplVec3 at =
-            vplPatchSide_SampleCell(side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
-                                    vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
-        out->side[k] = tree->order[position];
+        const vplSidePoint point = vplPatchSide_SampleCell(
+            work->sides, side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
+            vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
+        out->triangle[k] = point.triangle;
         for (int axis = 0; axis < 3; axis++) {
-            out->at[axis][k] = vplComponent(at, axis);
-            out->normal[axis][k] = vplComponent(side->normal, axis);
-            out->place[axis][k] = scale * (vplComponent(at, axis) - vplComponent(n->middle, axis));
+            out->at[axis][k] = vplComponent(point.at, axis);
+            out->normal[axis][k] = vplComponent(point.normal, axis);
+            out->place[axis][k] = scale * (vplComponent(point.at, axis) - vplComponent(n->middle, axis));
         }
     }
 }
@@ -115,9 +115,11 @@ void vplLinkPoints_Draw(const vplLinkWork* work, int node)
 
 // ---- rays
 
-static vplVec3 pointOf(const vplLinkPoints* points, int i)
+static vplSidePoint pointOf(const vplLinkPoints* points, int i)
 {
-    return vplVec(points->at[0][i], points->at[1][i], points->at[2][i]);
+    return (vplSidePoint){vplVec(points->at[0][i], points->at[1][i], points->at[2][i]),
+                          vplVec(points->normal[0][i], points->normal[1][i], points->normal[2][i]),
+                          points->triangle[i]};
 }
 
 // The ends of a ray. Points are in the order of area, so any four consecutive rays leave from all quarters of a
@@ -147,9 +149,9 @@ static void join(const vplLinkWork* work, const vplLinkSight* sight, int first, 
         const int i = from[l] = fromPoint(sight, first + l), k = to[l] = toPoint(sight, first + l);
         amount[l] = first + l < sight->to ? sight->terms->of[i][k] : 0;
         if (amount[l] > 0) {
-            const vplVec3 at = pointOf(p, i);
-            const vplVec3 way = vplWayToLight(pointOf(q, k), sides->sides[q->side[k]].normal, at);
-            const vplRay ray = vplPatchSide_Leave(sides, &sides->sides[p->side[i]], at, way);
+            const vplSidePoint start = pointOf(p, i), end = pointOf(q, k);
+            const vplVec3 way = vplWayToLight(end.at, end.normal, start.at);
+            const vplRay ray = vplPatchSides_Leave(sides, &start, way);
             vplRayPacket_Set(&packet, l, &ray);
             seen->openP[i] += amount[l];
             seen->openQ[k] += amount[l];

@@ -31,8 +31,9 @@ static void judgeTask(void* data, int task, int worker)
         if (pair->p != pair->q) {
             r->answers[i] = vplJudgePair(&r->work, pair);
         } else { // a node and itself
-            const bool flat = r->work.tree->nodes[pair->p].flat;
-            r->answers[i] = (vplLinkAnswer){.verdict = flat ? VPL_LINK_NONE : VPL_LINK_DIVIDE_P};
+            const vplLinkNode* node = &r->work.tree->nodes[pair->p];
+            r->answers[i] = (vplLinkAnswer){.verdict = node->flat || node->children < 0 ? VPL_LINK_NONE
+                                                                                        : VPL_LINK_DIVIDE_P};
         }
     }
 }

@@ -30,7 +30,8 @@ typedef struct EnclosedTest {
     const vplPatchSides* sides;
     const vplLinkDef* def;
     bool* enclosed;
-    int* rays; // per side
+    float* target; // the wanted sum of each row; NULL where groups are none: 1 if enclosed, else at most 1
+    int* rays;     // per side
 } EnclosedTest;
 
 // Directions are stratified on a grid of 4 x 8 cells over the hemisphere, so that none misses a large
@@ -44,9 +45,9 @@ static bool isEnclosed(const EnclosedTest* t, int i)
                     v = ((float)(k % 8) + vplUnitFloat(r.v[1])) / 8;
         const int cell =
             vplPatchSide_OpenCell(side, (int)(r.v[2] % (uint32_t)__builtin_popcount(side->open)));
-        const vplVec3 from = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[2]), vplUnitFloat(r.v[3]));
-        const vplRay ray =
-            vplPatchSide_Leave(t->sides, side, from, vplSampleCosineAround(side->normal, u, v));
+        const vplSidePoint from =
+            vplPatchSide_SampleCell(t->sides, side, cell, vplUnitFloat(r.v[2]), vplUnitFloat(r.v[3]));
+        const vplRay ray = vplPatchSides_Leave(t->sides, &from, vplSampleCosineAround(from.normal, u, v));
         t->rays[i]++;
         if (vplPatchSides_Hit(t->sides, &ray) < 0) {
             return false;
@@ -82,7 +83,8 @@ static vplResult findEnclosed(EnclosedTest* t, vplArena* scratch, int64_t* rays)
 
 // One round: moves the sum of each row half of the way to 1; sides that are not enclosed only move if above
 // 1. The last round moves rows above 1 the whole way, which leaves none above, since no scale grows.
-static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, const bool* enclosed, bool last)
+static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, const EnclosedTest* test,
+                      bool last)
 {
     for (int i = 0; i < count; i++) {
         const double sum = sums[i][0], scale = (double)tree->scale[i];
@@ -90,15 +92,18 @@ static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, co
             tree->scale[i] = (float)(sum > MARGIN ? scale * MARGIN / sum : scale);
         } else if (sum > 0) {
             const double wanted = scale / sqrt(sum);
-            tree->scale[i] = (float)(!enclosed[i] && wanted > 1 ? 1 : wanted);
+            tree->scale[i] = (float)(test->target != NULL ? scale * sqrt((double)test->target[i] / sum)
+                                     : !test->enclosed[i] && wanted > 1 ? 1
+                                                                        : wanted);
         }
     }
 }
 
-static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, bool usual, bool* enclosed,
+static vplResult fitRows(vplLinks* links, vplArena* scratch, const EnclosedTest* test,
                          float* rowSums)
 {
-    const int count = links->sideCount, rounds = keep ? 0 : ROUNDS;
+    const vplRowSums rows = test->def->rowSums;
+    const int count = links->sideCount, rounds = rows == VPL_ROW_SUMS_KEEP ? 0 : ROUNDS;
     vplPlanes ones = vplPlanes_Alloc(scratch, count);
     const vplLinkScratch nodes = vplLinkScratch_Alloc(scratch, links);
     double(*sums)[3] = vplArena_Alloc(scratch, (size_t)count, sizeof *sums);
@@ -111,10 +116,10 @@ static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, bool usu
         TRY(vplLinks_Gather(links, &ones, &nodes, sums));
         for (int i = 0; i < count && round == 0; i++) {
             rowSums[i] = (float)sums[i][0];
-            enclosed[i] = enclosed[i] && (!usual || sums[i][0] >= CLOSED);
+            test->enclosed[i] = test->enclosed[i] && (rows != VPL_ROW_SUMS_USUAL || sums[i][0] >= CLOSED);
         }
         if (rounds > 0) {
-            fitScales(links->tree, sums, count, enclosed, round == rounds);
+            fitScales(links->tree, sums, count, test, round == rounds);
         }
     }
     return VPL_SUCCESS;
@@ -128,11 +133,14 @@ static vplResult findAndFit(vplLinks* links, EnclosedTest* test, vplArena* scrat
     for (int i = 0; i < links->sideCount; i++) {
         test->enclosed[i] = rows == VPL_ROW_SUMS_NORMALISE;
     }
-    if (rows == VPL_ROW_SUMS_USUAL) {
+    if (rows == VPL_ROW_SUMS_USUAL && test->sides->patches->groupCount > 0) {
+        test->target = vplArena_Alloc(scratch, (size_t)links->sideCount, sizeof *test->target);
+        TRY(vplArena_Check(scratch));
+        TRY(vplPatchSides_FindHitShares(test->sides, test->def->seed, test->target, &links->rays));
+    } else if (rows == VPL_ROW_SUMS_USUAL) {
         TRY(findEnclosed(test, scratch, &links->rays));
     }
-    return fitRows(links, scratch, rows == VPL_ROW_SUMS_KEEP, rows == VPL_ROW_SUMS_USUAL, test->enclosed,
-                   rowSums);
+    return fitRows(links, scratch, test, rowSums);
 }
 
 vplResult vplLinks_FitRows(vplLinks* links, const vplPatchSides* sides, const vplLinkDef* def,

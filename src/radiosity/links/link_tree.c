@@ -4,6 +4,7 @@
 // Based on: Smits, Arvo and Greenberg, A Clustering Algorithm for Radiosity in Complex Environments, SIGGRAPH
 // 1994, 3. Departs: groups are divided by normals as well, so that the cosine term applies to groups, too.
 #include "math/vec.h"
+#include "geometry/triangle.h"
 #include "radiosity/links/links.h"
 #include "radiosity/sides/side.h"
 
@@ -27,6 +28,7 @@ static const double FLAT = 1e-5;
 
 typedef struct Build {
     const vplPatchSide* sides;
+    const vplPatches* patches;
     struct vplLinkTree* tree;
     double mean;  // expected radiosity, W/m^2; 0: nothing emits
     int* scratch; // one per side
@@ -61,12 +63,48 @@ static Range rangeOf(const Build* b, const vplLinkNode* node)
     return range;
 }
 
+// ---- corners of sides
+
+// A corner of a side or, if it is of a group, of one of its triangles.
+typedef struct Corner {
+    vplVec3 at, normal;
+    int left; // corners that are left with this one
+} Corner;
+
+static void nextCorner(const Build* b, const vplPatchSide* side, Corner* c)
+{
+    c->left--;
+    if (c->left > 0) {
+        const vplPatchParts parts = vplPatches_GetParts(b->patches, side->patch);
+        const int at = 3 * parts.count - c->left, node = parts.nodes[at / 3];
+        c->at = parts.count > 1 ? b->patches->positions[b->patches->nodes[node].corners[at % 3]]
+                                : side->corners[at];
+        if (at % 3 == 0) {
+            const vplVec3 n = b->patches->geometry->normals[node];
+            c->normal = side->back ? vplNegate(n) : n;
+        }
+    }
+}
+
+static Corner firstCorner(const Build* b, const vplPatchSide* side)
+{
+    if (!vplPatches_IsGroup(b->patches, side->patch)) {
+        return (Corner){side->corners[0], side->normal, 3};
+    }
+    Corner c = {.left = 3 * vplPatches_GetParts(b->patches, side->patch).count + 1};
+    nextCorner(b, side, &c);
+    return c;
+}
+
 // ---- properties of a node
 
-// The centroid of a side's open cells.
-static vplVec3 middleOf(const vplPatchSide* side)
+// The centroid of a side's open cells, of a group's triangles.
+static vplVec3 middleOf(const vplPatchSide* side, bool isGroup)
 {
     vplVec3 sum = {0, 0, 0};
+    if (isGroup) {
+        return side->incentre; // the centroid
+    }
     if (side->open == VPL_ALL_CELLS) {
         for (int k = 0; k < 3; k++) {
             sum = vplAdd(sum, vplScale(1.0f / 3, side->corners[k]));
@@ -90,12 +128,14 @@ static void sumNode(const Build* b, vplLinkNode* node)
         const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
         area += (double)s->area;
         emitted += (double)s->area * vplRgbMean(s->emission);
-        const vplVec3 at = middleOf(s);
+        const vplVec3 at = middleOf(s, vplPatches_IsGroup(b->patches, s->patch));
         for (int axis = 0; axis < 3; axis++) {
             middle[axis] += (double)s->area * (double)vplComponent(at, axis);
             normal[axis] += (double)s->area * (double)vplComponent(s->normal, axis);
-            for (int k = 0; k < 3; k++) {
-                const float x = vplComponent(s->corners[k], axis);
+        }
+        for (Corner c = firstCorner(b, s); c.left > 0; nextCorner(b, s, &c)) {
+            for (int axis = 0; axis < 3; axis++) {
+                const float x = vplComponent(c.at, axis);
                 low[axis] = x < low[axis] ? x : low[axis];
                 high[axis] = x > high[axis] ? x : high[axis];
             }
@@ -121,26 +161,28 @@ static void sumNode(const Build* b, vplLinkNode* node)
 static void measureNode(const Build* b, vplLinkNode* node)
 {
     const vplPatchSide* firstSide = &b->sides[b->tree->order[node->first]];
-    double radius = 0, cosine = 1, height = 0, turned = 0;
+    double radius = 0, cosine = 1, turn = 1, height = 0, turned = 0;
     for (int i = 0; i < node->count; i++) {
         const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
-        const double c = (double)vplDot(s->normal, node->normal);
-        cosine = c < cosine ? c : cosine;
-        const double off = (double)vplLength(vplSub(s->normal, firstSide->normal));
-        turned = off > turned ? off : turned;
-        for (int k = 0; k < 3; k++) {
-            const double r = (double)vplLength(vplSub(s->corners[k], node->centre));
+        turn = fmin(turn, (double)vplDot(s->normal, node->normal));
+        for (Corner c = firstCorner(b, s); c.left > 0; nextCorner(b, s, &c)) {
+            const double towards = (double)vplDot(c.normal, node->normal);
+            cosine = towards < cosine ? towards : cosine;
+            const double off = (double)vplLength(vplSub(c.normal, firstSide->normal));
+            turned = off > turned ? off : turned;
+            const double r = (double)vplLength(vplSub(c.at, node->centre));
             radius = r > radius ? r : radius;
-            const double h =
-                fabs((double)vplDot(vplSub(s->corners[k], firstSide->corners[0]), firstSide->normal));
+            const double h = fabs((double)vplDot(vplSub(c.at, firstSide->corners[0]), firstSide->normal));
             height = h > height ? h : height;
         }
     }
     cosine = cosine < -1 ? -1 : cosine;
     node->radius = (float)radius;
     node->cosSpread = (float)cosine;
+    node->cosTurn = (float)turn;
     node->sinSpread = (float)sqrt(1 - cosine * cosine);
-    node->flat = node->count == 1 || (turned <= FLAT && height <= FLAT * radius);
+    node->group = node->count == 1 && vplPatches_IsGroup(b->patches, firstSide->patch);
+    node->flat = (node->count == 1 && !node->group) || (turned <= FLAT && height <= FLAT * radius);
 }
 
 // ---- halving
@@ -237,7 +279,7 @@ vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct 
     if (sides->count > 0) {
         tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = sides->count};
         tree->nodeCount = 1;
-        buildNode(&(Build){sides->sides, tree, expectedRadiosity(sides), scratch}, 0, 0);
+        buildNode(&(Build){sides->sides, sides->patches, tree, expectedRadiosity(sides), scratch}, 0, 0);
     }
     tree->areaUpTo[0] = 0;
     for (int i = 0; i < sides->count; i++) {

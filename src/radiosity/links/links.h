@@ -13,13 +13,15 @@ typedef struct vplLinkNode {
     int children;     // the first of two, which follow each other and come after their parent; -1: a side
     int first, count; // in vplLinkTree.order
     bool flat;        // all sides are in one plane, so none sees another
+    bool group;       // one side of a group of triangles
     float area;
     float brightness;           // expected radiosity over the expected mean of all sides; at least 1
     vplVec3 low, high, centre;  // bounds, metres, and their centre
     float radius;               // of the sphere around `centre`
     vplVec3 middle;             // the centroid of the open cells
     vplVec3 normal;             // unit: the mean weighted by area, or any if that is 0
-    float cosSpread, sinSpread; // of the largest angle between `normal` and a side's normal
+    float cosSpread, sinSpread; // of the largest angle between `normal` and a triangle's normal
+    float cosTurn;              // of that between `normal` and a side's, which is the mean over a group
 } vplLinkNode;
 
 // One direction of a link. The receiver's irradiance at its middle is the sum of factor times the mean of the

@@ -20,7 +20,7 @@ vplResult vplEdgeVertices_Create(vplArena* scratch, const vplPatches* patches, v
     TRY(vplPointCells_Create(scratch, patches->positions, (size_t)patches->positionCount, size, &out->cells));
     uint8_t* used = vplArena_AllocZero(scratch, (size_t)patches->positionCount, 1);
     TRY(vplArena_Check(scratch));
-    for (int i = 0; i < 3 * patches->patchCount; i++) {
+    for (int i = 0; i < 3 * (patches->patchCount - patches->groupCount); i++) {
         const uint32_t corner = patches->nodes[patches->patches[i / 3]].corners[i % 3];
         if (!used[corner]) {
             used[corner] = 1;

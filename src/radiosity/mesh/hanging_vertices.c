@@ -52,11 +52,12 @@ static int findPosition(const Cutter* c, vplVec3 p)
     }
 }
 
-// Enters the corners of patches only, and so none of a triangle without area.
+// Enters the corners of patches only, and so none of a triangle without area. Those of groups are left out: large patches
+// beside them stay whole.
 static void fillTable(Cutter* c)
 {
     memset(c->table, 0xff, (c->tableMask + 1) * sizeof *c->table);
-    for (int i = 0; i < 3 * c->patches->patchCount; i++) {
+    for (int i = 0; i < 3 * (c->patches->patchCount - c->patches->groupCount); i++) {
         const uint32_t corner = c->patches->nodes[c->patches->patches[i / 3]].corners[i % 3];
         size_t slot = slotOf(c, c->patches->positions[corner]);
         while (c->table[slot] >= 0 && c->table[slot] != (int)corner) {
@@ -133,8 +134,9 @@ static vplResult cut(Cutter* c, const vplPiece* piece)
     c->hangs[middle] = 1;
     const uint32_t a = piece->corners[k], b = piece->corners[(k + 1) % 3], tip = piece->corners[(k + 2) % 3];
     const uint8_t next = piece->edges >> (k + 1) % 3 & 1, last = piece->edges >> (k + 2) % 3 & 1;
-    const vplPiece first = {{tip, a, (uint32_t)middle}, piece->patch, (uint8_t)(last | 2)};
-    const vplPiece second = {{tip, (uint32_t)middle, b}, piece->patch, (uint8_t)(2 | next << 2)};
+    const vplPiece first = {{tip, a, (uint32_t)middle}, piece->patch, piece->triangle, (uint8_t)(last | 2)};
+    const vplPiece second = {
+        {tip, (uint32_t)middle, b}, piece->patch, piece->triangle, (uint8_t)(2 | next << 2)};
     TRY(cut(c, &first));
     return cut(c, &second);
 }
@@ -160,9 +162,13 @@ vplResult vplCutPatches(vplArena* scratch, const vplPatches* patches, vplPieces*
         fillTable(&c);
     }
     for (int i = 0; i < patches->patchCount; i++) {
-        vplPiece whole = {.patch = i, .edges = 7};
-        memcpy(whole.corners, patches->nodes[patches->patches[i]].corners, sizeof whole.corners);
-        TRY(cut(&c, &whole));
+        const vplPatchParts parts = vplPatches_GetParts(patches, i);
+        for (int k = 0; k < parts.count; k++) {
+            const vplPatchNode* node = &patches->nodes[parts.nodes[k]];
+            vplPiece whole = {.patch = i, .triangle = node->triangle, .edges = 7};
+            memcpy(whole.corners, node->corners, sizeof whole.corners);
+            TRY(parts.count > 1 && c.onEdges != NULL ? append(&c, &whole) : cut(&c, &whole));
+        }
     }
     return VPL_SUCCESS;
 }

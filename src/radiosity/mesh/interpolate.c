@@ -111,7 +111,8 @@ static void findMissing(const Sharpening* s, const vplRgb* vertexValues)
     }
     for (int i = 0; i < sides->count; i++) {
         const double* sum = s->sums[i];
-        const bool known = sum[3] > 0 && sides->sides[i].open == VPL_ALL_CELLS;
+        const bool known = sum[3] > 0 && sides->sides[i].open == VPL_ALL_CELLS &&
+                           !vplPatches_IsGroup(sides->patches, sides->sides[i].patch);
         const vplRgb v = s->values[i];
         s->missing[i] =
             known ? (vplRgb){(float)((double)v.r - sum[0] / sum[3]), (float)((double)v.g - sum[1] / sum[3]),

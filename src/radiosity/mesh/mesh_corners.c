@@ -53,7 +53,7 @@ static float angleAt(const vplVec3* positions, const vplPiece* piece, int corner
 // The triangle of the scene that a corner belongs to.
 static int triangleOf(const vplMeshCorners* b, size_t i)
 {
-    return vplPatches_TriangleOf(b->patches, vplMeshCorners_Piece(b, i)->patch);
+    return vplMeshCorners_Piece(b, i)->triangle;
 }
 
 // A counting sort, which keeps the order of pieces at each position.

@@ -11,7 +11,7 @@ typedef struct Builder {
     vplPatchMesh* mesh;
     vplVec3 *positions, *normals;
     uint32_t* indices;
-    int* patchOf;
+    int *patchOf, *triangleOf;
     uint8_t* edges;
     struct vplPatchesAround* around;
 } Builder;
@@ -25,9 +25,10 @@ static int sharedFaces(const vplMeshCorners* c, size_t i, size_t j)
 }
 
 // faces: bit 0: on the front; bit 1: on the back.
-static vplPatchAround makeAround(const vplPatchSides* sides, int patch, int faces, float angle)
+static vplPatchAround makeAround(const vplPatchSides* sides, const vplPiece* piece, int faces, float angle)
 {
-    vplPatchAround around = {.patch = patch, .angle = angle};
+    const int patch = piece->patch;
+    vplPatchAround around = {.patch = patch, .triangle = piece->triangle, .angle = angle};
     for (int face = 0; face < 2; face++) {
         const int side = faces >> face & 1 ? vplSideOf(sides, patch, face) : -1;
         around.side[face] = side;
@@ -54,14 +55,14 @@ static void addCorner(Builder* b, size_t i, int faces, double normal[3])
     const int vertex = b->mesh->vertexCount - 1;
     const vplVec3 n = b->corners->normals[i];
     const float angle = b->corners->angles[i];
-    const int patch = vplMeshCorners_Piece(b->corners, i)->patch;
+    const vplPiece* whole = vplMeshCorners_Piece(b->corners, i);
     size_t* end = &b->around->first[vertex + 1];
     normal[0] += (double)angle * (double)n.x;
     normal[1] += (double)angle * (double)n.y;
     normal[2] += (double)angle * (double)n.z;
     // Pieces are in the order of patches, so those of one patch are consecutive.
-    const vplPatchAround piece = makeAround(b->mesh->sides, patch, faces, angle);
-    if (*end > b->around->first[vertex] && b->around->list[*end - 1].patch == patch) {
+    const vplPatchAround piece = makeAround(b->mesh->sides, whole, faces, angle);
+    if (*end > b->around->first[vertex] && b->around->list[*end - 1].patch == piece.patch) {
         addPiece(&b->around->list[*end - 1], &piece);
     } else {
         b->around->list[(*end)++] = piece;
@@ -109,6 +110,7 @@ static void addTriangles(Builder* b)
     b->mesh->hangingVertices = pieces->hanging;
     for (size_t i = 0; i < pieces->count; i++) {
         b->patchOf[i] = pieces->pieces[i].patch;
+        b->triangleOf[i] = pieces->pieces[i].triangle;
         b->edges[i] = pieces->pieces[i].edges;
     }
 }
@@ -147,6 +149,7 @@ static vplResult reserve(Builder* b)
     mesh->normals = b->normals = vplArena_Alloc(arena, vertices, sizeof *b->normals);
     mesh->indices = b->indices = vplArena_Alloc(arena, 3 * triangles, sizeof *b->indices);
     mesh->patchOf = b->patchOf = vplArena_Alloc(arena, triangles, sizeof *b->patchOf);
+    mesh->triangleOf = b->triangleOf = vplArena_Alloc(arena, triangles, sizeof *b->triangleOf);
     mesh->edges = b->edges = vplArena_Alloc(arena, triangles, sizeof *b->edges);
     mesh->around = b->around = vplArena_AllocZero(arena, 1, sizeof *b->around);
     TRY(vplArena_Check(arena));

@@ -14,6 +14,7 @@
 typedef struct vplPiece {
     uint32_t corners[3]; // in vplPatches.positions
     int patch;
+    int triangle;  // of the geometry
     uint8_t edges; // as vplPatchMesh.edges
 } vplPiece;
 
@@ -72,7 +73,8 @@ vplResult vplMeshCorners_Find(vplArena* scratch, const vplPatches* patches, cons
 // A patch that has a corner at a vertex, or an edge that was cut there, on the front or on the back.
 typedef struct vplPatchAround {
     int patch;
-    float angle; // radians, of all its pieces
+    int triangle; // of the geometry: the first of a group's at this vertex
+    float angle;  // radians, of all its pieces
     // Copies of the patch's sides, front and back, which halve the time of interpolation.
     int side[2];     // -1: light does not reach it, or a wall stands between it and the vertex
     uint8_t open[2]; // how many of its cells are open
@@ -93,5 +95,20 @@ typedef struct vplMeshFace {
 
 // Finds the face (0: front, 1: back). False if light does not reach that side.
 bool vplPatchMesh_GetFace(const vplPatchMesh* mesh, int triangle, int face, vplMeshFace* faceOut);
+
+// ---- values at points (value_at.c)
+
+typedef struct vplPatchPoint {
+    int patch, face; // 0: front, 1: back
+    vplVec3 position;
+} vplPatchPoint;
+
+// The triangles of patch p are those from firstOut[p] to firstOut[p + 1] - 1; there is one more than patches.
+void vplPatchMesh_ListPatches(const vplPatchMesh* mesh, int* firstOut);
+
+// The value at a point of a patch, interpolated between its corners. `first` comes from the function above,
+// vertexValues are [vertex][front, back].
+vplRgb vplPatchMesh_ValueAt(const vplPatchMesh* mesh, const int* first, const vplPatchPoint* point,
+                            const vplRgb* vertexValues);
 
 #endif

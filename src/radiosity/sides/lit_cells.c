@@ -19,12 +19,12 @@ _Static_assert((int)VPL_PATCH_CELLS == (int)VPL_RAY_PACKET, "one ray for each ce
 static bool isWhole(const vplLitSearch* s, int side, int64_t* rays)
 {
     vplRayPacket down = {.active = 0}, across = {.active = 0};
-    const vplVec3 up = vplScale(s->heights[side / 2], vplLitSearch_Normal(s, side));
-    const int triangle = vplPatches_TriangleOf(s->patches, side / 2);
     for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
-        const vplLitSample sample = {.side = side, .cell = cell};
-        const vplVec3 offset = vplAdd(vplLitSample_OnSide(s, &sample), up);
-        vplRayPacket_Set(&down, cell, &(vplRay){offset, vplNegate(up), {triangle, 1}});
+        vplLitSample sample = {.side = side, .cell = cell};
+        const vplVec3 at = vplLitSample_OnSide(s, &sample),
+                      up = vplScale(s->heights[side / 2], vplLitSearch_Normal(s, side, sample.triangle)),
+                      offset = vplAdd(at, up);
+        vplRayPacket_Set(&down, cell, &(vplRay){offset, vplNegate(up), {sample.triangle, 1}});
         vplRayPacket_Set(&across, cell, &(vplRay){offset, vplSub(s->litPoint[side], offset), {0, 0}});
     }
     *rays += VPL_PATCH_CELLS;

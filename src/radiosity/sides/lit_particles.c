@@ -41,19 +41,17 @@ static double chooseSource(const vplEmission* e, int64_t particle, float u)
 static bool start(const vplLitSearch* s, const vplParticle* p, int64_t* rays, vplLitHit* vertex)
 {
     const int triangle = s->emission->sources[p->source].triangle;
-    *vertex = (vplLitHit){p->position, p->normal, -1};
+    *vertex = (vplLitHit){p->position, p->normal, -1, triangle};
     if (triangle < 0) {
         return true;
     }
     vertex->side = 2 * vplPatches_Find(s->patches, triangle, p->position);
-    return vplLitSearch_Offset(s, vertex->side, p->position, rays, &vertex->point);
+    return vplLitSearch_Offset(s, vertex->side, triangle, p->position, rays, &vertex->point);
 }
 
-static bool isBlack(const vplLitSearch* s, int side)
+static bool isBlack(const vplLitSearch* s, int triangle)
 {
-    const vplGeometry* g = s->geometry;
-    const int triangle = vplPatches_TriangleOf(s->patches, side / 2);
-    const vplRgb rho = g->materials[g->triangleMaterials[triangle]].diffuse;
+    const vplRgb rho = vplReflectanceOfTriangle(s->geometry, triangle);
     return !(rho.r > 0 || rho.g > 0 || rho.b > 0);
 }
 
@@ -63,7 +61,7 @@ static int tracePath(const Batch* b, uint64_t particle, vplVec3 direction, vplLi
     int count = 1;
     while (count < VERTICES &&
            vplLitSearch_Trace(b->search, path[count - 1].point, direction, rays, &path[count]) &&
-           !isBlack(b->search, path[count++].side)) {
+           !isBlack(b->search, path[count++].triangle)) {
         const vplRandom4 r = vplRandomAt(b->search->def->seed, STREAM, particle * VERTICES + (uint64_t)count);
         direction = vplSampleCosineAround(path[count - 1].normal, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]));
     }

@@ -14,17 +14,6 @@ enum { STREAM = 0x5ead1000 }; // of random numbers
 // Samples move towards the patch's centre by this fraction of the way: about four heights of an offset point.
 static const float INSET = 0x1p-6f;
 
-static int triangleOf(const vplLitSearch* s, int side)
-{
-    return vplPatches_TriangleOf(s->patches, side / 2);
-}
-
-vplVec3 vplLitSearch_Normal(const vplLitSearch* s, int side)
-{
-    const vplVec3 n = s->geometry->normals[triangleOf(s, side)];
-    return side & 1 ? vplNegate(n) : n;
-}
-
 bool vplLitSearch_IsVisible(const vplLitSearch* s, vplVec3 a, vplVec3 b, int64_t* rays)
 {
     const vplRay ray = {a, vplSub(b, a), {0, 0}};
@@ -55,10 +44,10 @@ static int firstBelow(const vplLitSearch* s, vplVec3 offset, vplVec3 down, int t
     return found && hit.t > 1 - VPL_COPLANAR ? hit.triangle : triangle;
 }
 
-bool vplLitSearch_Offset(const vplLitSearch* s, int side, vplVec3 point, int64_t* rays, vplVec3* offsetOut)
+bool vplLitSearch_Offset(const vplLitSearch* s, int side, int triangle, vplVec3 point, int64_t* rays,
+                         vplVec3* offsetOut)
 {
-    const int triangle = triangleOf(s, side);
-    const vplVec3 up = vplScale(s->heights[side / 2], vplLitSearch_Normal(s, side));
+    const vplVec3 up = vplScale(s->heights[side / 2], vplLitSearch_Normal(s, side, triangle));
     const vplRay ray = {vplAdd(point, up), vplNegate(up), {triangle, 1}};
     vplHit hit;
     *offsetOut = ray.origin;
@@ -82,16 +71,16 @@ bool vplLitSearch_Trace(const vplLitSearch* s, vplVec3 from, vplVec3 direction, 
     const bool back = vplDot(direction, hit.normal) > 0;
     const vplVec3 normal = back ? vplNegate(hit.normal) : hit.normal;
     const int patch = vplPatches_Find(s->patches, hit.triangle, hit.position);
-    *hitOut =
-        (vplLitHit){vplAdd(hit.position, vplScale(s->heights[patch], normal)), normal, 2 * patch + back};
+    *hitOut = (vplLitHit){vplAdd(hit.position, vplScale(s->heights[patch], normal)), normal, 2 * patch + back,
+                          hit.triangle};
     return true;
 }
 
 void vplLitSearch_ResolveOverlap(const vplLitSearch* s, vplLitHit* hit, int64_t* rays)
 {
     const vplVec3 down = vplScale(-s->heights[hit->side / 2], hit->normal);
-    const int triangle = triangleOf(s, hit->side), first = firstBelow(s, hit->point, down, triangle, rays);
-    if (first != triangle) {
+    const int first = firstBelow(s, hit->point, down, hit->triangle, rays);
+    if (first != hit->triangle) {
         const int patch = vplPatches_Find(s->patches, first, vplAdd(hit->point, down));
         hit->side = 2 * patch + (vplDot(hit->normal, s->geometry->normals[first]) < 0);
     }
@@ -109,22 +98,31 @@ static vplRandom4 randomOf(const vplLitSearch* s, const vplLitSample* sample, in
     return vplRandomAt(s->def->seed, STREAM + (uint32_t)s->pass, index);
 }
 
-vplVec3 vplLitSample_OnSide(const vplLitSearch* s, const vplLitSample* sample)
+vplVec3 vplLitSample_OnSide(const vplLitSearch* s, vplLitSample* sample)
 {
     const vplRandom4 r = randomOf(s, sample, POSITION);
+    const int patch = sample->side / 2;
+    const bool group = vplPatches_IsGroup(s->patches, patch);
     vplVec3 corners[3];
     const int stratum = sample->index * 5 % VPL_LIT_SAMPLES; // spreads the first four over the cell, too
     const float u = ((float)stratum + vplUnitFloat(r.v[0])) / VPL_LIT_SAMPLES,
-                v = vplUnitFloat(r.v[1]) + vplVanDerCorput((uint32_t)sample->index);
-    vplSide_GetCorners(s->patches, sample->side / 2, sample->side & 1, corners);
-    const vplVec3 at = vplCell_Point(corners, sample->cell, u, v < 1 ? v : v - 1),
+                sum = vplUnitFloat(r.v[1]) + vplVanDerCorput((uint32_t)sample->index),
+                v = sum < 1 ? sum : sum - 1;
+    float place = u;
+    sample->triangle = group ? vplGroup_SampleTriangle(s->patches, patch, sample->cell, u, &place)
+                             : vplPatches_TriangleOf(s->patches, patch);
+    vplPatchNode_GetCorners(s->patches, group ? sample->triangle : s->patches->patches[patch],
+                            sample->side & 1, corners);
+    const vplVec3 at = group ? vplTriangle_Point(corners, place, v)
+                             : vplCell_Point(corners, sample->cell, u, v),
                   centre = vplScale(1 / 3.0f, vplAdd(corners[0], vplAdd(corners[1], corners[2])));
     return vplAdd(at, vplScale(INSET, vplSub(centre, at)));
 }
 
 bool vplLitSample_Offset(const vplLitSearch* s, vplLitSample* sample, int64_t* rays)
 {
-    return vplLitSearch_Offset(s, sample->side, vplLitSample_OnSide(s, sample), rays, &sample->point);
+    const vplVec3 at = vplLitSample_OnSide(s, sample);
+    return vplLitSearch_Offset(s, sample->side, sample->triangle, at, rays, &sample->point);
 }
 
 // Tests whether random ray `ray` hits a lit side, and whether the hit sees that side's lit point; otherwise
@@ -132,7 +130,7 @@ bool vplLitSample_Offset(const vplLitSearch* s, vplLitSample* sample, int64_t* r
 static bool seesLitSide(const vplLitSearch* s, vplLitSample* sample, int ray, int64_t* rays, vplVec3* from)
 {
     const vplRandom4 r = randomOf(s, sample, FIRST_RAY + ray);
-    const vplVec3 direction = vplSampleCosineAround(vplLitSearch_Normal(s, sample->side),
+    const vplVec3 direction = vplSampleCosineAround(vplLitSearch_Normal(s, sample->side, sample->triangle),
                                                     vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]));
     vplLitHit hit;
     if (!vplLitSearch_Trace(s, sample->point, direction, rays, &hit)) {
@@ -177,7 +175,8 @@ bool vplLitSample_IsLit(const vplLitSearch* s, vplLitSample* sample, int gathers
         const vplRandom4 r = randomOf(s, sample, LIGHT_SOURCE);
         sample->fromEye = false;
         if (sampleLightSource(s, &r, sample->point, from) &&
-            vplDot(vplSub(*from, sample->point), vplLitSearch_Normal(s, sample->side)) > 0 &&
+            vplDot(vplSub(*from, sample->point), vplLitSearch_Normal(s, sample->side, sample->triangle)) >
+                0 &&
             vplLitSearch_IsVisible(s, sample->point, *from, rays)) {
             return true;
         }

@@ -9,6 +9,7 @@
 #define VPL_RADIOSITY_LIT_SEARCH_H
 
 #include "base/arena.h"
+#include "math/vec.h"
 
 #include <vpl/radiosity.h>
 
@@ -58,12 +59,16 @@ vplResult vplLitSearch_ForAllSides(vplLitSearch* search, vplExamineFcn* examine,
 
 // ---- rays between offset points (lit_rays.c)
 
-// The unit normal of a side.
-vplVec3 vplLitSearch_Normal(const vplLitSearch* search, int side);
+// The unit normal of a side of a triangle.
+static inline vplVec3 vplLitSearch_Normal(const vplLitSearch* search, int side, int triangle)
+{
+    const vplVec3 n = search->geometry->normals[triangle];
+    return side & 1 ? vplNegate(n) : n;
+}
 
-// The offset point above a point of a side. False if another surface is between the two, or if an overlapping
-// triangle has a lower index.
-bool vplLitSearch_Offset(const vplLitSearch* search, int side, vplVec3 point, int64_t* rays,
+// The offset point above a point of a side, which is on a triangle. False if another surface is between the two, or if
+// an overlapping triangle has a lower index.
+bool vplLitSearch_Offset(const vplLitSearch* search, int side, int triangle, vplVec3 point, int64_t* rays,
                          vplVec3* offsetOut);
 
 // Moves an offset point of a patch by its height towards a point that it sees. An offset point that lies
@@ -78,6 +83,7 @@ typedef struct vplLitHit {
     vplVec3 point;  // the offset point there
     vplVec3 normal; // of the side
     int side;       // -1: none
+    int triangle;
 } vplLitHit;
 
 // False if the ray hits nothing.
@@ -94,12 +100,13 @@ enum { VPL_LIT_SAMPLES = 8 }; // per cell
 // Sample `index`, in [0, VPL_LIT_SAMPLES), of a cell.
 typedef struct vplLitSample {
     int side, cell, index;
+    int triangle;  // set by vplLitSample_OnSide
     vplVec3 point; // the offset point
     bool fromEye;  // set by vplLitSample_IsLit: the side that sends light was found from a viewpoint alone
 } vplLitSample;
 
 // The sample's point on the side: stratified, and clear of the patch's edges, where walls meet.
-vplVec3 vplLitSample_OnSide(const vplLitSearch* search, const vplLitSample* sample);
+vplVec3 vplLitSample_OnSide(const vplLitSearch* search, vplLitSample* sample);
 
 // Fills sample->point. False as in vplLitSearch_Offset.
 bool vplLitSample_Offset(const vplLitSearch* search, vplLitSample* sample, int64_t* rays);

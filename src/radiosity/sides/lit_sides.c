@@ -3,6 +3,7 @@
 #include "base/context.h"
 #include "math/scalar.h"
 #include "math/vec.h"
+#include "geometry/triangle.h"
 #include "radiosity/sides/lit_search.h"
 #include "radiosity/sides/side.h"
 
@@ -27,14 +28,14 @@ static void markLit(const vplLitSearch* s, const vplLitSample* sample, vplVec3 f
 // Tests whether a viewpoint sees a side that is not lit yet.
 static void testViewpoints(const vplLitSearch* s, int side, int64_t* rays)
 {
-    const vplVec3 n = vplLitSearch_Normal(s, side);
     for (int i = 0; i < QUARTERS && s->open[side] == 0; i++) {
         vplLitSample sample = {.side = side, .cell = 5 * i, .fromEye = true};
         if (!vplLitSample_Offset(s, &sample, rays)) {
             continue;
         }
         for (int k = 0; k < s->def->viewpointCount && s->nextOpen[side] == 0; k++) {
-            const vplVec3 viewpoint = s->def->viewpoints[k];
+            const vplVec3 viewpoint = s->def->viewpoints[k],
+                          n = vplLitSearch_Normal(s, side, sample.triangle);
             if (vplDot(vplSub(viewpoint, sample.point), n) > 0 &&
                 vplLitSearch_IsVisible(s, sample.point, viewpoint, rays)) {
                 markLit(s, &sample, viewpoint);
@@ -43,15 +44,17 @@ static void testViewpoints(const vplLitSearch* s, int side, int64_t* rays)
     }
 }
 
-// Tests whether all geometry lies behind a side, as for the outsides of most walls, half of all sides.
-static bool facesOutside(const vplLitSearch* s, int side)
+// Tests whether all geometry lies behind a triangle's side, as for the outsides of most walls, half of all sides.
+static bool facesOutside(const vplLitSearch* s, int side, int triangle)
 {
     const vplGeometry* g = s->geometry;
-    const vplVec3 n = vplLitSearch_Normal(s, side), low = g->boundsMin, high = g->boundsMax;
+    const vplVec3 n = vplLitSearch_Normal(s, side, triangle), low = g->boundsMin, high = g->boundsMax;
     const vplVec3 farthest =
         vplVec(n.x > 0 ? high.x : low.x, n.y > 0 ? high.y : low.y, n.z > 0 ? high.z : low.z);
     vplVec3 corners[3];
-    vplSide_GetCorners(s->patches, side / 2, side & 1, corners);
+    const int patch = side / 2,
+              node = vplPatches_IsGroup(s->patches, patch) ? triangle : s->patches->patches[patch];
+    vplPatchNode_GetCorners(s->patches, node, side & 1, corners);
     return vplDot(vplSub(farthest, corners[0]), n) < s->heights[side / 2];
 }
 
@@ -62,7 +65,8 @@ static void testLight(const vplLitSearch* s, int side, int64_t* rays)
         vplLitSample sample = {.side = side, .cell = 4 * i + s->pass % 4};
         vplVec3 from;
         if (vplLitSample_Offset(s, &sample, rays) &&
-            vplLitSample_IsLit(s, &sample, facesOutside(s, side) ? 0 : GATHERS, rays, &from)) {
+            vplLitSample_IsLit(s, &sample, facesOutside(s, side, sample.triangle) ? 0 : GATHERS, rays,
+                               &from)) {
             markLit(s, &sample, from);
         }
     }

@@ -4,6 +4,7 @@
 #include "base/context.h"
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
+#include "math/double3.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/sides/lit_search.h"
@@ -45,20 +46,23 @@ static vplResult checkDef(vplContext* context, const vplPatchSidesDef* def)
 
 // ---- which cells are open
 
-// An offset point is a thousandth of its patch's size above it: most objects that stand on the patch are
-// thicker, and most that cover it are nearer. The height is at least four roundings of a coordinate.
+// An offset point is a thousandth of its patch's size above it, of a group's mean triangle's: most objects that stand on
+// the patch are thicker, and most that cover it are nearer. The height is at least four roundings of a coordinate.
 static void findHeights(vplLitSearch* s)
 {
     double total = 0;
     for (int i = 0; i < s->patches->patchCount; i++) {
         const double area = vplPatches_Area(s->patches, i);
+        const vplPatchParts parts = vplPatches_GetParts(s->patches, i);
         vplVec3 corners[3];
         float largest = 0;
-        vplSide_GetCorners(s->patches, i, false, corners);
-        for (int k = 0; k < 9; k++) {
-            largest = fmaxf(largest, fabsf(vplComponent(corners[k / 3], k % 3)));
+        for (int k = 0; k < 9 * parts.count; k++) {
+            if (k % 9 == 0) {
+                vplPatchNode_GetCorners(s->patches, parts.nodes[k / 9], false, corners);
+            }
+            largest = fmaxf(largest, fabsf(vplComponent(corners[k % 9 / 3], k % 3)));
         }
-        s->heights[i] = vplMaxf((float)sqrt(area) * 0x1p-10f, largest * 0x1p-20f);
+        s->heights[i] = vplMaxf((float)sqrt(area / parts.count) * 0x1p-10f, largest * 0x1p-20f);
         total += area;
     }
     s->meanArea = s->patches->patchCount > 0 ? total / s->patches->patchCount : 0;
@@ -134,6 +138,32 @@ static vplVec3 incentreOf(const vplVec3 c[3])
     return vplVec((float)at[0], (float)at[1], (float)at[2]);
 }
 
+// Sets what is a mean over the triangles of a group.
+static void meanOfGroup(const vplPatches* patches, int patch, bool back, vplPatchSide* side)
+{
+    const vplGeometry* g = patches->geometry;
+    const vplPatchParts parts = vplPatches_GetParts(patches, patch);
+    double normal[3] = {0}, centre[3] = {0}, reflected[3] = {0}, all = 0;
+    for (int i = 0; i < parts.count; i++) {
+        vplVec3 c[3];
+        const double area = vplGeometry_TriangleArea(g, parts.nodes[i]);
+        vplPatchNode_GetCorners(patches, parts.nodes[i], back, c);
+        for (int k = 0; k < 3; k++) {
+            normal[k] += area * (double)vplComponent(g->normals[parts.nodes[i]], k);
+            for (int corner = 0; corner < 3; corner++) {
+                centre[k] += area / 3 * (double)vplComponent(c[corner], k);
+            }
+        }
+        vplAddRgb(reflected, area, vplReflectanceOfTriangle(g, parts.nodes[i]));
+        all += area;
+    }
+    const double length = (back ? -1 : 1) * sqrt(vplDot3(normal, normal));
+    side->normal =
+        vplVec((float)(normal[0] / length), (float)(normal[1] / length), (float)(normal[2] / length));
+    side->incentre = vplVec((float)(centre[0] / all), (float)(centre[1] / all), (float)(centre[2] / all));
+    side->reflectance = vplDivideRgb(reflected, all);
+}
+
 static vplPatchSide makeSide(const vplPatches* patches, int patch, bool back, unsigned open)
 {
     const vplGeometry* g = patches->geometry;
@@ -144,10 +174,13 @@ static vplPatchSide makeSide(const vplPatches* patches, int patch, bool back, un
     const double area = vplPatches_Area(patches, patch) * __builtin_popcount(open) / VPL_PATCH_CELLS;
     side.area = fmaxf(vplClampToFloat(area), FLT_MIN); // others divide by it
     side.normal = back ? vplNegate(g->normals[triangle]) : g->normals[triangle];
-    vplSide_GetCorners(patches, patch, back, side.corners);
+    vplPatchNode_GetCorners(patches, patches->patches[patch], back, side.corners);
     side.incentre = incentreOf(side.corners);
     if (!back) {
         side.emission = vplScaleRadiometric(VPL_PI, material->emission);
+    }
+    if (vplPatches_IsGroup(patches, patch)) {
+        meanOfGroup(patches, patch, back, &side);
     }
     return side;
 }

@@ -7,9 +7,9 @@
 
 #include <float.h>
 
-void vplSide_GetCorners(const vplPatches* patches, int patch, bool back, vplVec3 cornersOut[3])
+void vplPatchNode_GetCorners(const vplPatches* patches, int node, bool back, vplVec3 cornersOut[3])
 {
-    const uint32_t* corners = patches->nodes[patches->patches[patch]].corners;
+    const uint32_t* corners = patches->nodes[node].corners;
     for (int k = 0; k < 3; k++) {
         cornersOut[k] = patches->positions[corners[back ? (3 - k) % 3 : k]];
     }
@@ -26,20 +26,66 @@ static inline void fromPart(int part, float w[3])
 }
 
 // Source: Heitz, A Low-Distortion Map Between Triangle and Square, 2019.
-vplVec3 vplCell_Point(const vplVec3 corners[3], int cell, float u, float v)
+static inline void toTriangle(float u, float v, float w[3])
 {
-    float w[3];
     w[1] = v > u ? 0.5f * u : u - 0.5f * v;
     w[2] = v > u ? v - 0.5f * u : 0.5f * v;
     w[0] = 1 - w[1] - w[2];
-    fromPart(cell & 3, w);
-    fromPart(cell >> 2, w);
+}
+
+static inline vplVec3 weigh(const vplVec3 corners[3], const float w[3])
+{
     return vplAdd(vplScale(w[0], corners[0]), vplAdd(vplScale(w[1], corners[1]), vplScale(w[2], corners[2])));
 }
 
-vplVec3 vplPatchSide_SampleCell(const vplPatchSide* side, int k, float u, float v)
+vplVec3 vplCell_Point(const vplVec3 corners[3], int cell, float u, float v)
 {
-    return vplCell_Point(side->corners, k, u, v);
+    float w[3];
+    toTriangle(u, v, w);
+    fromPart(cell & 3, w);
+    fromPart(cell >> 2, w);
+    return weigh(corners, w);
+}
+
+vplVec3 vplTriangle_Point(const vplVec3 corners[3], float u, float v)
+{
+    float w[3];
+    toTriangle(u, v, w);
+    return weigh(corners, w);
+}
+
+int vplGroup_SampleTriangle(const vplPatches* p, int patch, int k, float u, float* uOut)
+{
+    const int* first = &p->firstMember[patch - (p->patchCount - p->groupCount)];
+    const double target = p->areaUpTo[first[1] - 1] * ((k + (double)u) / VPL_PATCH_CELLS);
+    int low = first[0], high = first[1] - 1;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (p->areaUpTo[middle] > target) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    const double before = low > first[0] ? p->areaUpTo[low - 1] : 0, area = p->areaUpTo[low] - before;
+    const float place = (float)((target - before) / area);
+    *uOut = place < 0x1.fffffep-1f ? place : 0x1.fffffep-1f;
+    return p->members[low];
+}
+
+vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchSide* side, int k, float u,
+                                     float v)
+{
+    const vplPatches* p = sides->patches;
+    if (!vplPatches_IsGroup(p, side->patch)) {
+        return (vplSidePoint){vplCell_Point(side->corners, k, u, v), side->normal,
+                              vplPatches_TriangleOf(p, side->patch)};
+    }
+    vplVec3 corners[3];
+    const int triangle = vplGroup_SampleTriangle(p, side->patch, k, u, &u);
+    const vplVec3 n = p->geometry->normals[triangle];
+    vplPatchNode_GetCorners(p, triangle, side->back, corners);
+    return (vplSidePoint){vplTriangle_Point(corners, u, v), side->back ? vplNegate(n) : n, triangle};
 }
 
 vplVec3 vplPatchSide_CellCentre(const vplPatchSide* side, int k)
@@ -62,15 +108,14 @@ int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
 
 // ---- rays
 
-vplRay vplPatchSide_Leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at, vplVec3 direction)
+vplRay vplPatchSides_Leave(const vplPatchSides* sides, const vplSidePoint* from, vplVec3 direction)
 {
-    const vplPatches* patches = sides->patches;
-    const vplGeometry* g = patches->geometry;
-    const int triangle = vplPatches_TriangleOf(patches, side->patch);
+    const vplGeometry* g = sides->patches->geometry;
+    const int triangle = from->triangle;
     const vplHit start = {.object = g->owners[triangle],
                           .face = vplGeometry_FaceOf(g, triangle),
                           .triangle = triangle,
-                          .position = at,
+                          .position = from->at,
                           .normal = g->normals[triangle]};
     return vplGeometry_Leave(g, &start, direction);
 }
@@ -87,13 +132,11 @@ int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray)
 
 // ---- values
 
-vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side)
+vplRgb vplReflectanceOf(const vplPatchSides* sides, int triangle, int side)
 {
-    if (side >= 0) {
-        return sides->sides[side].reflectance;
-    }
-    const vplGeometry* g = sides->patches->geometry;
-    return g->materials[g->triangleMaterials[vplPatches_TriangleOf(sides->patches, patch)]].diffuse;
+    return side >= 0 && !vplPatches_IsGroup(sides->patches, sides->sides[side].patch)
+               ? sides->sides[side].reflectance
+               : vplReflectanceOfTriangle(sides->patches->geometry, triangle);
 }
 
 float vplClampToFloat(double x)

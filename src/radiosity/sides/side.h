@@ -18,27 +18,42 @@ static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
     return sides->ofPatch[2 * (size_t)patch + (size_t)face];
 }
 
-// The corners of a patch, counter-clockwise seen from one of its sides.
-void vplSide_GetCorners(const vplPatches* patches, int patch, bool back, vplVec3 cornersOut[3]);
+// The corners of a node, counter-clockwise seen from one of its sides.
+void vplPatchNode_GetCorners(const vplPatches* patches, int node, bool back, vplVec3 cornersOut[3]);
 
 // A point of a cell of a triangle, uniform over it for u, v uniform in [0, 1).
 vplVec3 vplCell_Point(const vplVec3 corners[3], int cell, float u, float v);
 
-// The midpoint of cell k.
+// The triangle at a point of cell k of a group. *uOut, v is the point's place on the whole triangle.
+int vplGroup_SampleTriangle(const vplPatches* patches, int patch, int k, float u, float* uOut);
+
+// A point of a triangle, uniform over it for u, v uniform in [0, 1).
+vplVec3 vplTriangle_Point(const vplVec3 corners[3], float u, float v);
+
+// The midpoint of cell k of a patch that is no group.
 vplVec3 vplPatchSide_CellCentre(const vplPatchSide* side, int k);
 
 // The k-th open cell.
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
 
-// The ray that leaves a side at its point `at`.
-vplRay vplPatchSide_Leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at,
-                          vplVec3 direction);
+// The ray that leaves a side at a point of a triangle. The point's normal does not count.
+vplRay vplPatchSides_Leave(const vplPatchSides* sides, const vplSidePoint* from, vplVec3 direction);
 
 // The side that a ray hits; -1: the ray hits nothing, or a side that light does not reach.
 int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray);
 
-// The reflectance of a patch. `side`: the patch's side, or -1.
-vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side);
+// The share of what each side emits that arrives at sides, by 64 rays from each. *rays grows by them. (hit_share.c)
+vplResult vplPatchSides_FindHitShares(const vplPatchSides* sides, uint64_t seed, float* sharesOut,
+                                      int64_t* rays);
+
+// The reflectance of a triangle of the geometry.
+static inline vplRgb vplReflectanceOfTriangle(const vplGeometry* g, int triangle)
+{
+    return g->materials[g->triangleMaterials[triangle]].diffuse;
+}
+
+// The reflectance of a triangle that is a part of a patch. `side`: the patch's side, or -1.
+vplRgb vplReflectanceOf(const vplPatchSides* sides, int triangle, int side);
 
 // sum += weight * value, per channel.
 static inline void vplAddRgb(double sum[3], double weight, vplRgb value)

@@ -73,8 +73,10 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->ssvp.firstBounce = (int)ceil(share * o->ssvp.firstBounce);
     o->ssvp.secondBounce = (int)ceil(share * o->ssvp.secondBounce);
     o->ssvp.clusters = (int)ceil(share * o->ssvp.clusters);
+    o->ssvp.maxClusters = (int)ceil(share * o->ssvp.maxClusters);
     o->radiosity.patches = (int)ceil(share * o->radiosity.patches);
     o->radiosity.iterations = o->radiosity.iterations < 20 ? o->radiosity.iterations : 20;
+    o->radiosity.gather = 0;
 }
 
 // A plan is not begun if this share of the time foreseen for its first picture is more than the time that is left.

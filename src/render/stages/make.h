@@ -12,13 +12,14 @@ typedef void vplReportFcn(const vplRun* run);
 
 vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeAreaLights, vplMakeReflectiveMaps,
     vplMakeParticles, vplMakeFirstBounce, vplMakeClusters, vplMakeParaboloids, vplMakeSecondBounce,
-    vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeClusteredLights, vplMakeVirtualLights,
-    vplMakePatches, vplMakeSides, vplMakePatchMesh, vplMakeFormFactors, vplMakePatchLight, vplMakeSolution,
-    vplMakeVertexLight, vplMakePicture, vplMakePaths;
+    vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeFurtherBounces, vplMakeClusteredLights,
+    vplMakeVirtualLights, vplMakePatches, vplMakeSides, vplMakePatchMesh, vplMakeFormFactors,
+    vplMakePatchLight, vplMakeSolution, vplMakeVertexLight, vplMakePicture, vplMakePaths;
 
 vplDestroyFcn vplDestroyGeometry, vplDestroyEmitterMaps, vplDestroyReflectiveMaps, vplDestroyLightSet,
-    vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyClusteredLights, vplDestroyPatches,
-    vplDestroySides, vplDestroyPatchMesh, vplDestroyFormFactors, vplDestroyImage, vplDestroyPaths;
+    vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyFurtherBounces,
+    vplDestroyClusteredLights, vplDestroyPatches, vplDestroySides, vplDestroyPatchMesh, vplDestroyFormFactors,
+    vplDestroyImage, vplDestroyPaths;
 
 vplReportFcn vplReportGeometry, vplReportParticles, vplReportClusteredLights, vplReportVirtualLights,
     vplReportPatches, vplReportSides, vplReportFormFactors, vplReportSolution;
@@ -30,6 +31,12 @@ void vplReportLights(const vplLightSet* set, vplRenderStats* stats);
 static inline int vplCountPoints(const vplPlan* plan)
 {
     return (plan->options.output.antialias & ~1) + 1;
+}
+
+// True if neighbouring pixels share virtual lights or rays.
+static inline bool vplPixelsShareLight(const vplPlan* plan)
+{
+    return plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && (plan->showsVirtual || plan->gathers);
 }
 
 // Particles of a pass: --grow-from in the first, twice as many in each that follows, up to --particles.

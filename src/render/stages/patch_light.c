@@ -27,19 +27,32 @@ static int placePoints(const vplRun* run, int side, int samples, vplSurfacePoint
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplPatchSide* p = &sides->sides[side];
-    const int triangle = vplPatches_TriangleOf(run->results[VPL_STAGE_PATCHES], p->patch);
     const int open = __builtin_popcount(p->open), count = open < samples ? open : samples;
     for (int i = 0; i < count; i++) {
         const int k = vplPatchSide_OpenCell(p, (2 * i + 1) * open / (2 * count));
         const vplRandom4 r = vplRandomAt(run->plan->options.seed, PATCH_LIGHT_STREAM,
                                          (uint64_t)side * VPL_PATCH_CELLS + (uint64_t)k);
-        points[i] = (vplSurfacePoint){
-            vplPatchSide_SampleCell(p, k, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1])), p->normal, triangle};
+        const vplSidePoint at =
+            vplPatchSide_SampleCell(sides, p, k, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]));
+        points[i] = (vplSurfacePoint){at.at, at.normal, at.triangle};
     }
-    if (samples == 1 && open == VPL_PATCH_CELLS) {
+    if (samples == 1 && open == VPL_PATCH_CELLS && !vplPatches_IsGroup(sides->patches, p->patch)) {
         points[0].position = p->incentre;
     }
     return count;
+}
+
+// Keeps the light of each open cell; where they have no point each, the side's own.
+static void keepCells(const vplPatchSide* side, const vplRgb* irradiance, int count, vplRgb mean,
+                      vplRgb* cells)
+{
+    const int open = __builtin_popcount(side->open);
+    for (int k = 0; k < VPL_PATCH_CELLS; k++) {
+        cells[k] = mean;
+    }
+    for (int i = 0; i < count && count == open; i++) {
+        cells[vplPatchSide_OpenCell(side, i)] = irradiance[i];
+    }
 }
 
 static void sumSide(const Chunk* chunk, int i, vplRgb* meanOut, float* spreadOut)
@@ -61,6 +74,7 @@ static void sumSide(const Chunk* chunk, int i, vplRgb* meanOut, float* spreadOut
 
 static vplResult lightChunk(const vplRun* run, const vplShadeDef* def, int first, int count, Chunk* chunk)
 {
+    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     vplPatchLight* light = chunk->light;
     chunk->firstPoint[0] = 0;
     for (int i = 0; i < count; i++) {
@@ -72,6 +86,11 @@ static vplResult lightChunk(const vplRun* run, const vplShadeDef* def, int first
                        chunk->irradiance, &run->stats->rays));
     for (int i = 0; i < count; i++) {
         sumSide(chunk, i, &light->direct[first + i], &light->spread[first + i]);
+        if (light->cells != NULL) {
+            const int at = chunk->firstPoint[i];
+            keepCells(&sides->sides[first + i], chunk->irradiance + at, chunk->firstPoint[i + 1] - at,
+                      light->direct[first + i], light->cells + (size_t)(first + i) * VPL_PATCH_CELLS);
+        }
     }
     return VPL_SUCCESS;
 }
@@ -118,8 +137,10 @@ vplResult vplMakePatchLight(const vplRun* run, void** resultOut)
     vplRgb* direct = vplArena_AllocZero(run->arena, count, sizeof *direct);
     float* spread = vplArena_AllocZero(run->arena, count, sizeof *spread);
     vplRgb* source = vplArena_AllocZero(run->arena, count, sizeof *source);
+    const size_t cellCount = run->plan->gathers && !run->draft ? count * VPL_PATCH_CELLS : 0;
+    vplRgb* cells = vplArena_Alloc(run->arena, cellCount, sizeof *cells);
     TRY(vplArena_Check(run->arena));
-    *light = (vplPatchLight){direct, spread, source};
+    *light = (vplPatchLight){direct, spread, source, cellCount > 0 ? cells : NULL};
     *resultOut = light;
     TRY(lightSides(run, sides->count, light));
     findSource(sides, light);
@@ -224,9 +245,19 @@ vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
     const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
+    const bool all = run->plan->gathers; // rays meet light of lamps, too; that of emitters comes from cells
     vplRgb* corners = vplArena_Alloc(run->arena, 2 * (size_t)mesh->vertexCount, sizeof *corners);
+    vplRgb* received = vplArena_Alloc(run->scratch, all ? (size_t)mesh->sides->count : 0, sizeof *received);
     TRY(vplArena_Check(run->arena));
+    TRY(vplArena_Check(run->scratch));
     *resultOut = corners;
-    TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners));
-    return vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners);
+    if (all) {
+        const vplTransport transport = vplTransportOf(run);
+        TRY(vplGatherRadiosity(&transport, s->radiosity, received));
+    }
+    const vplRgb* values = all ? received : s->irradiance;
+    TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, values, corners));
+    TRY(vplPatchMesh_Sharpen(mesh, o->vertexWeight, values, o->sharpen, corners));
+    // Rays of pixels find the small things at groups themselves.
+    return mesh->sides->patches->groupCount > 0 && !all ? vplGatherAtGroups(run, mesh, corners) : VPL_SUCCESS;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stages that prepare radiosity: patches, uniform or adaptive, the sides of patches that light can reach,
 // the mesh of patches, and form factors of all pairs or links.
+#include "geometry/triangle.h"
 #include "render/runner.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -15,6 +16,7 @@ static vplResult bisect(const vplRun* run, int count, vplPatches** patchesOut)
     def.count = count;
     def.rounds = o->subdivisions;
     def.cut = o->cuts == VPL_PATCH_CUTS_ON;
+    def.group = o->groups == VPL_PATCH_GROUPS_ON;
     return vplPatches_Create(run->results[VPL_STAGE_GEOMETRY], &def, patchesOut);
 }
 
@@ -147,6 +149,8 @@ void vplReportPatches(const vplRun* run)
 {
     const vplPatches* patches = run->results[VPL_STAGE_PATCHES];
     run->stats->patches = patches->patchCount;
+    run->stats->patchGroups = patches->groupCount;
+    run->stats->groupedTriangles = vplPatches_CountGrouped(patches);
 }
 
 // ---- poses

@@ -32,7 +32,8 @@ static vplResult drawPatches(const vplRun* run, const vplView* view, vplImage* i
 
 static vplResult shadeView(const vplRun* run, const vplView* view, const vplShadeDef* def, vplImage* image)
 {
-    const bool patches = run->plan->showsPatches && (run->parts & VPL_PART_INDIRECT) != 0;
+    const bool patches =
+        run->plan->showsPatches && !run->plan->gathers && (run->parts & VPL_PART_INDIRECT) != 0;
     vplShadeStats stats = {0};
     if (vplShowsPatchesAlone(run->plan->options.output.show)) {
         TRY(vplClear(run->context, image->pixels, vplValueCount(image) * sizeof *image->pixels));
@@ -54,6 +55,12 @@ static vplResult shadeSample(const vplRun* run, const vplShadeDef* plain, int i,
 {
     vplShadeDef def = *plain;
     vplCompensationDef compensation;
+    vplGatherDef gather;
+    if (def.gather != NULL) {
+        gather = *def.gather;
+        gather.firstRay = (uint32_t)i * (uint32_t)gather.rayCount;
+        def.gather = &gather;
+    }
     if (def.compensation != NULL) { // short rays of all samples and passes are one sequence
         compensation = *def.compensation;
         compensation.firstRay = (uint32_t)(run->pass * count + i) * (uint32_t)compensation.rayCount;
@@ -165,11 +172,16 @@ static vplResult shade(const vplRun* run, const Shading* s, int parts, int first
     const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
     vplShadeDef def = describe(run);
     vplCompensationDef compensation;
+    vplGatherDef gather;
     if ((parts & VPL_PART_DIRECT) != 0 && plan->showsDirect) {
         addDirect(run, s->shadows, &def);
     }
     if (count > 0) {
         addVirtual(run, v, s->lightMaps, first, count, &def);
+    }
+    if (plan->gathers && (parts & VPL_PART_INDIRECT) != 0) {
+        TRY(vplDescribeGather(run, &gather));
+        def.gather = &gather;
     }
     // Compensation is computed once, for all batches together.
     const bool whole = (run->parts & VPL_PART_INDIRECT) != 0;

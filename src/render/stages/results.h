@@ -6,8 +6,8 @@
 #include "render/stage.h"
 
 // VPL_STAGE_NEAR_DISTANCE has a float: the metres within which surfaces see a fifth of what they see.
-// VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light at the vertices of the
-// patch mesh, [vertex][front, back].
+// VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light, for a final gather of all
+// light but that of emitters, at the vertices of the patch mesh, [vertex][front, back].
 
 // VPL_STAGE_EMITTER_MAPS: one entry per emitter.
 typedef struct vplEmitterMaps {
@@ -43,7 +43,8 @@ typedef struct vplVirtualLights {
 // VPL_STAGE_FIRST_BOUNCE and VPL_STAGE_SECOND_BOUNCE.
 typedef struct vplBounceLights {
     vplLightSet* lights;
-    uint64_t shift; // of the sample pattern
+    vplLightSet* all; // that they were chosen from; NULL: no choice
+    uint64_t shift;   // of the sample pattern
     float* use; // of each sample of the reflective maps: the share of its light that stays; NULL: not asked
     int sampleCount; // of them
 } vplBounceLights;
@@ -51,6 +52,8 @@ typedef struct vplBounceLights {
 // VPL_STAGE_CLUSTERS and VPL_STAGE_SECOND_CLUSTERS.
 typedef struct vplBounceClusters {
     vplLightClusters* clusters;
+    vplLightClusters* whole; // before splitting, from which the next frame starts; NULL: none was to be split
+    vplClusterAgreement agreement;
     uint64_t shift; // of the sample pattern
 } vplBounceClusters;
 
@@ -62,11 +65,24 @@ typedef struct vplBounceMaps {
     uint64_t shift;
 } vplBounceMaps;
 
-// VPL_STAGE_CLUSTERED_LIGHTS: the lights of both bounces as one list.
+// One bounce: the results of its stages.
+typedef struct vplBounceParts {
+    const vplBounceLights* lights;
+    const vplBounceClusters* clusters; // NULL: not needed
+    const vplBounceMaps* maps;         // NULL: not needed
+} vplBounceParts;
+
+// VPL_STAGE_FURTHER_BOUNCES: the third bounce, and those after it.
+typedef struct vplFurtherBounces {
+    vplBounceParts* bounces;
+    int count;
+} vplFurtherBounces;
+
+// VPL_STAGE_CLUSTERED_LIGHTS: the lights of all bounces as one list.
 typedef struct vplClusteredLights {
     vplLightSet* set;
     int* clusterOf;            // of each light: index in `shadows`
-    vplParaboloidMap* shadows; // maps of both bounces
+    vplParaboloidMap* shadows; // maps of all bounces
     int shadowCount;           // 0 where lights do not see by clusters
 } vplClusteredLights;
 
@@ -81,6 +97,8 @@ typedef struct vplPatchLight {
     vplRgb* direct; // irradiance, W/m^2
     float* spread;  // its standard deviation over the side
     vplRgb* source; // radiosity: emission and reflected direct light, W/m^2
+    vplRgb*
+        cells; // irradiance of the VPL_PATCH_CELLS cells of each side, W/m^2; NULL: no rays will meet them
 } vplPatchLight;
 
 // VPL_STAGE_SOLUTION: one entry per side, W/m^2.
@@ -122,11 +140,17 @@ vplResult vplEstimateLoss(const vplRun* run, const vplVirtualLights* lights, con
 vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights* lights, vplPlan* plan,
                                       char* why);
 
+// Describes the rays of the final gather, whose light the solution knows.
+vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut);
+
 // Draws patches over a picture, as smooth indirect light or as the values that --show asks for.
 vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* image);
 
 // Finds the reflected part of the radiosity of sides: all but their emission.
 void vplFindReflected(const vplPatchSides* sides, const vplRgb* radiosity, vplRgb* reflectedOut);
+
+// Gathers the irradiance of reflected light at those vertices of groups that the picture needs: [vertex][front, back].
+vplResult vplGatherAtGroups(const vplRun* run, const vplPatchMesh* mesh, vplRgb* corners);
 
 // Finds the irradiance of sides by the light that sides send and by emitters.
 vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOut);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Clusters of SSVP, their paraboloid maps, and the lights of both bounces as one list.
+// Clusters of SSVP and their paraboloid maps.
 #include "lights/light_set.h"
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
@@ -12,44 +12,66 @@ static bool follows(const vplRun* run, uint64_t shift, uint64_t lastShift)
 
 // ---- clusters
 
+static vplResult splitClusters(const vplRun* run, const vplBounceLights* bounce, vplBounceClusters* c)
+{
+    const vplPlan* plan = run->plan;
+    vplClusterSplitDef def = vplDefaultClusterSplitDef();
+    def.maxCount = plan->options.ssvp.maxClusters;
+    def.view = vplSsvpView(run);
+    def.view.pointCount = 128;
+    TRY(vplSplitClusters(run->results[VPL_STAGE_GEOMETRY], bounce->lights, c->whole, &def, &c->clusters,
+                         &c->agreement));
+    run->stats->rays += c->agreement.rays;
+    return VPL_SUCCESS;
+}
+
 // Lights are weighted by the share of their light that stays in the scene: 8 clusters of Sponza have a FLIP
 // of 0.192 against paths with these weights, and 0.248 without.
-static vplResult makeClusters(const vplRun* run, const vplBounceLights* bounce, void** resultOut)
+vplResult vplClusterBounce(const vplRun* run, const vplBounceLights* bounce, const vplBounceClusters* last,
+                           vplBounceClusters** resultOut)
 {
     const vplSsvpOptions* o = &run->plan->options.ssvp;
     vplBounceClusters* c = vplArena_Alloc(run->arena, 1, sizeof *c);
     TRY(vplArena_Check(run->arena));
-    *c = (vplBounceClusters){NULL, bounce->shift};
+    *c = (vplBounceClusters){.shift = bounce->shift};
     *resultOut = c;
-    const vplBounceClusters* last = run->before;
     float* weights = NULL;
     vplClusterDef def = vplDefaultClusterDef();
     def.count = o->clusters;
     def.metric = o->metric;
     def.w1 = o->w1;
     def.w2 = o->w2;
-    def.last = last != NULL && follows(run, c->shift, last->shift) ? last->clusters : NULL;
+    def.last = last == NULL || !follows(run, c->shift, last->shift) ? NULL
+               : last->whole != NULL                                ? last->whole
+                                                                    : last->clusters;
     if (o->oversampling > 1) {
         TRY(vplMeasureLightUse(run, bounce->lights, &weights));
     }
     def.weights = weights;
-    return vplFindClusters(bounce->lights, &def, &c->clusters);
+    if (!vplSsvpSplits(run->plan)) {
+        return vplFindClusters(bounce->lights, &def, &c->clusters);
+    }
+    TRY(vplFindClusters(bounce->lights, &def, &c->whole));
+    return splitClusters(run, bounce, c);
 }
 
 vplResult vplMakeClusters(const vplRun* run, void** resultOut)
 {
-    return makeClusters(run, run->results[VPL_STAGE_FIRST_BOUNCE], resultOut);
+    return vplClusterBounce(run, run->results[VPL_STAGE_FIRST_BOUNCE], run->before,
+                            (vplBounceClusters**)resultOut);
 }
 
 vplResult vplMakeSecondClusters(const vplRun* run, void** resultOut)
 {
-    return makeClusters(run, run->results[VPL_STAGE_SECOND_BOUNCE], resultOut);
+    return vplClusterBounce(run, run->results[VPL_STAGE_SECOND_BOUNCE], run->before,
+                            (vplBounceClusters**)resultOut);
 }
 
 void vplDestroyClusters(void* result)
 {
     vplBounceClusters* c = result;
     vplLightClusters_Destroy(c->clusters);
+    vplLightClusters_Destroy(c->whole);
 }
 
 // ---- paraboloid maps
@@ -95,12 +117,11 @@ static vplParaboloidPlace placeOf(const Viewing* v, int i)
                                 .onSurface = true};
 }
 
-// Maps have triangles where later stages need surfaces besides distances.
-static vplResult makeMaps(const vplRun* run, const vplBounceLights* bounce, const vplBounceClusters* c,
-                          bool triangles, void** resultOut)
+vplResult vplMapBounce(const vplRun* run, const vplBounceParts* bounce, const vplBounceMaps* last,
+                       bool triangles, vplBounceMaps** resultOut)
 {
+    const vplBounceClusters* c = bounce->clusters;
     const int count = c->clusters->count;
-    const vplBounceMaps* last = run->before;
     vplBounceMaps* maps = vplArena_Alloc(run->arena, 1, sizeof *maps);
     int* viewpoints = vplArena_Alloc(run->arena, (size_t)count, sizeof *viewpoints);
     vplParaboloidPlace* places = vplArena_Alloc(run->scratch, (size_t)count, sizeof *places);
@@ -109,7 +130,7 @@ static vplResult makeMaps(const vplRun* run, const vplBounceLights* bounce, cons
     *maps = (vplBounceMaps){NULL, viewpoints, count, c->shift};
     *resultOut = maps;
     const Viewing v = {.run = run,
-                       .lights = bounce->lights,
+                       .lights = bounce->lights->lights,
                        .clusters = c->clusters,
                        .maps = maps,
                        .last = last != NULL && follows(run, c->shift, last->shift) ? last : NULL};
@@ -124,71 +145,23 @@ static vplResult makeMaps(const vplRun* run, const vplBounceLights* bounce, cons
 
 vplResult vplMakeParaboloids(const vplRun* run, void** resultOut)
 {
-    return makeMaps(run, run->results[VPL_STAGE_FIRST_BOUNCE], run->results[VPL_STAGE_CLUSTERS],
-                    vplSsvpHasSecondBounce(run->plan) || vplSsvpShowsClusters(run->plan), resultOut);
+    const vplBounceParts first = vplSsvpBounce(run, 0);
+    return vplMapBounce(run, &first, run->before,
+                        (vplSsvpHasSecondBounce(run->plan) && vplSsvpSamplesMaps(run->plan)) ||
+                            vplSsvpShowsClusters(run->plan),
+                        (vplBounceMaps**)resultOut);
 }
 
 vplResult vplMakeSecondParaboloids(const vplRun* run, void** resultOut)
 {
-    return makeMaps(run, run->results[VPL_STAGE_SECOND_BOUNCE], run->results[VPL_STAGE_SECOND_CLUSTERS],
-                    false, resultOut);
+    const vplBounceParts second = vplSsvpBounce(run, 1);
+    return vplMapBounce(run, &second, run->before,
+                        vplSsvpHasFurtherBounces(run->plan) && vplSsvpSamplesMaps(run->plan),
+                        (vplBounceMaps**)resultOut);
 }
 
 void vplDestroyParaboloids(void* result)
 {
     vplBounceMaps* maps = result;
     vplParaboloidMaps_Destroy(maps->maps);
-}
-
-// ---- both bounces as one list
-
-static vplResult listShadows(const vplRun* run, vplClusteredLights* l)
-{
-    const vplBounceClusters* clusters[2] = {run->results[VPL_STAGE_CLUSTERS],
-                                            run->results[VPL_STAGE_SECOND_CLUSTERS]};
-    const vplBounceMaps* maps[2] = {run->results[VPL_STAGE_PARABOLOIDS],
-                                    run->results[VPL_STAGE_SECOND_PARABOLOIDS]};
-    const int shadows = maps[0]->count + (maps[1] != NULL ? maps[1]->count : 0);
-    l->clusterOf = vplArena_Alloc(run->arena, (size_t)l->set->lightCount, sizeof *l->clusterOf);
-    l->shadows = vplArena_Alloc(run->arena, (size_t)shadows, sizeof *l->shadows);
-    TRY(vplArena_Check(run->arena));
-    for (int k = 0, at = 0; k < 2 && maps[k] != NULL; k++) {
-        const int first = l->shadowCount;
-        for (int i = 0; i < clusters[k]->clusters->lightCount; i++) {
-            l->clusterOf[at++] = first + clusters[k]->clusters->of[i];
-        }
-        for (int i = 0; i < maps[k]->count; i++) {
-            l->shadows[l->shadowCount++] = maps[k]->maps->maps[i];
-        }
-    }
-    return VPL_SUCCESS;
-}
-
-vplResult vplMakeClusteredLights(const vplRun* run, void** resultOut)
-{
-    const vplBounceLights* bounce[2] = {run->results[VPL_STAGE_FIRST_BOUNCE],
-                                        run->results[VPL_STAGE_SECOND_BOUNCE]};
-    const vplLightSet none = {.context = run->context, .particleCount = 1};
-    vplClusteredLights* l = vplArena_AllocZero(run->arena, 1, sizeof *l);
-    TRY(vplArena_Check(run->arena));
-    *resultOut = l;
-    TRY(vplLightSet_Join(bounce[0]->lights, bounce[1] != NULL ? bounce[1]->lights : &none, &l->set));
-    return vplSsvpSees(run->plan) ? listShadows(run, l) : VPL_SUCCESS;
-}
-
-void vplDestroyClusteredLights(void* result)
-{
-    vplClusteredLights* l = result;
-    vplLightSet_Destroy(l->set);
-}
-
-void vplReportClusteredLights(const vplRun* run)
-{
-    const vplClusteredLights* l = run->results[VPL_STAGE_CLUSTERED_LIGHTS];
-    const vplBounceClusters* first = run->results[VPL_STAGE_CLUSTERS];
-    vplReportLights(l->set, run->stats);
-    if (first != NULL) {
-        run->stats->clusters = first->clusters->count;
-        run->stats->clusterIterations = first->clusters->iterations;
-    }
 }

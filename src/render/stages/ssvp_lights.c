@@ -75,7 +75,7 @@ static vplResult followUse(const vplRun* run, const vplLightSet* set, int count,
 // ---- the first bounce
 
 // Gives area lights the share of the first-bounce lights that they have of the power.
-static vplResult countAreaLightSamples(const vplRun* run, int* countOut)
+static vplResult countAreaLightSamples(const vplRun* run, int count, int* countOut)
 {
     vplEmission* emission;
     TRY(vplEmission_Create(run->results[VPL_STAGE_GEOMETRY], run->plan->emitters, run->plan->emitterCount,
@@ -85,7 +85,7 @@ static vplResult countAreaLightSamples(const vplRun* run, int* countOut)
         area += vplRgbMean(emission->sources[i].power);
     }
     const double all = vplEmission_Power(emission);
-    *countOut = all > 0 ? (int)rint(run->plan->options.ssvp.firstBounce * (area / all)) : 0;
+    *countOut = all > 0 ? (int)rint(count * (area / all)) : 0;
     vplEmission_Destroy(emission);
     return VPL_SUCCESS;
 }
@@ -163,26 +163,71 @@ static vplResult sampleMaps(const vplRun* run, int count, vplBounceLights* b, vp
     return result;
 }
 
-static vplResult sampleFirst(const vplRun* run, vplBounceLights* b)
+// Takes `count` samples from reflective maps, and from area lights by their share of the power.
+static vplResult sampleFirst(const vplRun* run, int count, vplBounceLights* b, vplLightSet** setOut)
 {
     int fromArea = 0;
     vplLightSet *seen = NULL, *shot = NULL;
-    TRY(countAreaLightSamples(run, &fromArea));
-    TRY(sampleMaps(run, run->plan->options.ssvp.firstBounce - fromArea, b, &seen));
+    TRY(countAreaLightSamples(run, count, &fromArea));
+    TRY(vplSsvpChooses(run->plan) ? sampleAll(run, count - fromArea, b->shift, &seen)
+                                  : sampleMaps(run, count - fromArea, b, &seen));
     if (fromArea == 0) {
-        b->lights = seen;
+        *setOut = seen;
         return VPL_SUCCESS;
     }
     vplResult result = shootFromAreaLights(run, fromArea, b->shift, &shot);
     if (result == VPL_SUCCESS) {
-        result = vplLightSet_Join(seen, shot, &b->lights);
+        result = vplLightSet_Join(seen, shot, setOut);
     }
     vplLightSet_Destroy(seen);
     vplLightSet_Destroy(shot);
     return result;
 }
 
-static vplResult beginBounce(const vplRun* run, void** resultOut)
+// ---- choice
+
+// Describes what the camera sees. Lights of different bounces are chosen independently.
+vplPlacementDef vplSsvpView(const vplRun* run)
+{
+    const vplPlan* plan = run->plan;
+    vplPlacementDef def = vplDefaultPlacementDef();
+    def.camera = plan->camera;
+    def.width = plan->options.output.width;
+    def.height = plan->options.output.height;
+    def.minDistance = vplClampDistance(run, (double)plan->virtualLights);
+    def.seed = plan->options.seed;
+    def.index = run->pass;
+    return def;
+}
+
+// Beyond these, more candidates take time and find nothing.
+enum { MAX_CANDIDATES = 16384 };
+
+int vplSsvpCountCandidates(const vplPlan* plan, int count)
+{
+    const int most = count > MAX_CANDIDATES ? count : MAX_CANDIDATES, times = plan->options.ssvp.oversampling;
+    return !vplSsvpChooses(plan) ? count : count > most / times ? most : count * times;
+}
+
+// Keeps about `count` of all lights of a bounce; all where there are no more candidates.
+static vplResult chooseLights(const vplRun* run, int count, vplBounceLights* b)
+{
+    if (b->all->particleCount <= count) {
+        b->lights = b->all;
+        b->all = NULL;
+        return VPL_SUCCESS;
+    }
+    const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
+    vplPlacementDef def = vplSsvpView(run);
+    int64_t rays;
+    float* contributions = vplArena_Alloc(run->scratch, (size_t)b->all->lightCount, sizeof *contributions);
+    TRY(vplArena_Check(run->scratch));
+    TRY(vplMeasureLights(g, b->all, &def, contributions, &rays));
+    run->stats->rays += rays;
+    return vplChooseLights(b->all, contributions, count, &def, &b->lights);
+}
+
+static vplResult beginBounce(const vplRun* run, vplBounceLights** resultOut)
 {
     vplBounceLights* b = vplArena_AllocZero(run->arena, 1, sizeof *b);
     TRY(vplArena_Check(run->arena));
@@ -193,28 +238,124 @@ static vplResult beginBounce(const vplRun* run, void** resultOut)
 
 vplResult vplMakeFirstBounce(const vplRun* run, void** resultOut)
 {
-    TRY(beginBounce(run, resultOut));
-    return sampleFirst(run, *resultOut);
+    const int count = run->plan->options.ssvp.firstBounce;
+    TRY(beginBounce(run, (vplBounceLights**)resultOut));
+    vplBounceLights* b = *resultOut;
+    if (!vplSsvpChooses(run->plan)) {
+        return sampleFirst(run, count, b, &b->lights);
+    }
+    TRY(sampleFirst(run, vplSsvpCountCandidates(run->plan, count), b, &b->all));
+    return chooseLights(run, count, b);
 }
 
-// ---- the second
+// ---- the second, and those after it
+
+// Bounces after the second have fewer lights, so that each carries about as much.
+int vplSsvpCountLights(const vplPlan* plan, int step)
+{
+    double count = plan->options.ssvp.secondBounce;
+    for (int k = 1; k < step; k++) {
+        count *= plan->reflectance;
+    }
+    return (int)ceil(count);
+}
+
+static vplResult sampleClusters(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights* b)
+{
+    vplSecondBounceDef def = vplDefaultSecondBounceDef();
+    def.count = vplSsvpCountLights(run->plan, step);
+    def.weight = run->plan->options.ssvp.secondWeight;
+    def.shift = b->shift;
+    def.step = step;
+    return vplSampleParaboloidMaps(run->results[VPL_STAGE_GEOMETRY], from->clusters->clusters,
+                                   from->maps->maps, &def, &b->lights);
+}
+
+// The next bounce begins from all lights, also from those that the camera sees no light of.
+static const vplLightSet* sourceOf(const vplBounceParts* from)
+{
+    return from->lights->all != NULL ? from->lights->all : from->lights->lights;
+}
+
+static vplResult shoot(const vplRun* run, const vplLightSet* from, int step, uint64_t shift,
+                       vplLightSet** setOut)
+{
+    vplNextBounceDef def = vplDefaultNextBounceDef();
+    def.shift = shift;
+    def.step = step;
+    def.count = vplSsvpCountCandidates(run->plan, vplSsvpCountLights(run->plan, step));
+    run->stats->rays += def.count;
+    return vplShootNextBounce(run->results[VPL_STAGE_GEOMETRY], from, &def, setOut);
+}
+
+static vplResult shootNext(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights* b)
+{
+    if (!vplSsvpChooses(run->plan)) {
+        return shoot(run, sourceOf(from), step, b->shift, &b->lights);
+    }
+    TRY(shoot(run, sourceOf(from), step, b->shift, &b->all));
+    return chooseLights(run, vplSsvpCountLights(run->plan, step), b);
+}
+
+// Adds the lights of one more bounce to the set.
+static vplResult addBounce(vplLightSet** set, const vplLightSet* bounce)
+{
+    vplLightSet* joined;
+    TRY(vplLightSet_Join(*set, bounce, &joined));
+    vplLightSet_Destroy(*set);
+    *set = joined;
+    return VPL_SUCCESS;
+}
+
+static vplResult shootAll(const vplRun* run, const vplLightSet* from, uint64_t shift, int* countOut,
+                          vplLightSet** setOut)
+{
+    const vplLightSet none = {.context = run->context, .particleCount = 0};
+    vplLightSet* last = NULL;
+    TRY(vplLightSet_Join(&none, &none, setOut));
+    for (int step = 2; step < run->plan->options.maxBounces; step++) {
+        vplLightSet* next = NULL;
+        vplResult result = shoot(run, last != NULL ? last : from, step, shift, &next);
+        vplLightSet_Destroy(last);
+        last = next;
+        result = result == VPL_SUCCESS ? addBounce(setOut, last) : result;
+        if (result != VPL_SUCCESS) {
+            vplLightSet_Destroy(last);
+            return result;
+        }
+        *countOut += vplSsvpCountLights(run->plan, step);
+    }
+    vplLightSet_Destroy(last);
+    return VPL_SUCCESS;
+}
+
+vplResult vplShootFurtherBounces(const vplRun* run, const vplBounceParts* from, vplBounceLights** resultOut)
+{
+    int count = 0;
+    TRY(beginBounce(run, resultOut));
+    vplBounceLights* b = *resultOut;
+    const bool chooses = vplSsvpChooses(run->plan);
+    TRY(shootAll(run, sourceOf(from), b->shift, &count, chooses ? &b->all : &b->lights));
+    return chooses ? chooseLights(run, count, b) : VPL_SUCCESS;
+}
+
+vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step,
+                            vplBounceLights** resultOut)
+{
+    TRY(beginBounce(run, resultOut));
+    return vplSsvpSamplesMaps(run->plan) ? sampleClusters(run, from, step, *resultOut)
+                                         : shootNext(run, from, step, *resultOut);
+}
 
 vplResult vplMakeSecondBounce(const vplRun* run, void** resultOut)
 {
-    const vplBounceClusters* clusters = run->results[VPL_STAGE_CLUSTERS];
-    const vplBounceMaps* maps = run->results[VPL_STAGE_PARABOLOIDS];
-    TRY(beginBounce(run, resultOut));
-    vplBounceLights* b = *resultOut;
-    vplSecondBounceDef def = vplDefaultSecondBounceDef();
-    def.count = run->plan->options.ssvp.secondBounce;
-    def.weight = run->plan->options.ssvp.secondWeight;
-    def.shift = b->shift;
-    return vplSampleParaboloidMaps(run->results[VPL_STAGE_GEOMETRY], clusters->clusters, maps->maps, &def,
-                                   &b->lights);
+    const vplBounceParts first = vplSsvpBounce(run, 0);
+    return vplMakeNextBounce(run, &first, 1, (vplBounceLights**)resultOut);
 }
 
 void vplDestroyBounce(void* result)
 {
     vplBounceLights* b = result;
     vplLightSet_Destroy(b->lights);
+    vplLightSet_Destroy(b->all);
 }

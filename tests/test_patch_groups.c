@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+// Tests of groups: patches of many small triangles.
+#include "patch_support.h"
+#include "radiosity_pictures.h"
+
+#include "geometry/triangle.h"
+#include "math/vec.h"
+#include "radiosity/sides/side.h"
+
+#include <stdlib.h>
+
+// ---- scenes
+
+// A closed cube with balls of 1,280 triangles in it. `emission`: of all surfaces.
+static vplScene* ballRoom(vplContext* context, int balls, int levels, float rho, float emission)
+{
+    Dice dice = {7, 0};
+    vplScene* scene = closedCubeScene(context, rho, emission);
+    for (int i = 0; i < balls; i++) {
+        const double turn[3] = {(double)roll(&dice, 0, 3), (double)roll(&dice, 0, 3), 0};
+        Shape ball = icosphere(levels);
+        vplObjectDef object = vplDefaultObjectDef();
+        placeShape(&ball, balls > 1 ? roll(&dice, 0.1f, 0.3f) : 0.4f, turn,
+                   balls > 1 ? rollVec(&dice, 0.6f) : vplVec(0.1f, -0.5f, -0.2f));
+        object.material = 1;
+        assert_int_equal(tryAddShape(scene, &ball, false, &object), VPL_SUCCESS);
+        freeShape(&ball);
+    }
+    return scene;
+}
+
+static vplPatches* groupsOf(const vplGeometry* g, int count, float size, bool cut)
+{
+    vplPatchDef def = vplDefaultPatchDef();
+    vplPatches* p = NULL;
+    def.count = count;
+    def.size = size;
+    def.cut = cut;
+    def.group = true;
+    assert_int_equal(vplPatches_Create(g, &def, &p), VPL_SUCCESS);
+    return p;
+}
+
+// ---- patches
+
+// Each triangle is the part of one patch, or divided into patches; areas are those of the triangles.
+static void assertWhole(const vplGeometry* g, const vplPatches* p)
+{
+    double area = 0;
+    int* found = calloc((size_t)g->triangleCount, sizeof *found);
+    assert_non_null(found);
+    for (int i = 0; i < p->patchCount; i++) {
+        const vplPatchParts parts = vplPatches_GetParts(p, i);
+        assert_true(parts.count > 1 ? i >= p->patchCount - p->groupCount : parts.count == 1);
+        double sum = 0;
+        for (int k = 0; k < parts.count; k++) {
+            const vplPatchNode* node = &p->nodes[parts.nodes[k]];
+            const vplTriangleCorners c = vplCornersOf(p->positions, node->corners);
+            const vplVec3 middle = vplScale(1 / 3.0f, vplAdd(c.corner[0], vplAdd(c.corner[1], c.corner[2])));
+            assert_int_equal(node->patch, i);
+            assert_int_equal(vplPatches_Find(p, node->triangle, middle), i);
+            found[node->triangle] += parts.count > 1 ? 1000000 : 1;
+            sum += vplTriangle_Area(&c);
+        }
+        assertNear(vplPatches_Area(p, i), sum, 1e-9, "area of patch", i);
+        area += sum;
+    }
+    for (int i = 0; i < g->triangleCount; i++) {
+        assert_true(found[i] == 1000000 || (found[i] > 0 && found[i] < 1000000));
+    }
+    assertNear(area, vplGeometry_Area(g), 1e-5 * vplGeometry_Area(g), "area", 0);
+    free(found);
+}
+
+TEST(EveryTriangleIsInOnePatch, 1)
+{
+    static const int counts[] = {1, 30, 100, 500, 3000};
+    vplGeometry* g = buildGeometry(ballRoom(context, 5, 3, 0.5f, 0));
+    for (int i = 0; i < 10; i++) {
+        vplPatches* p = groupsOf(g, counts[i / 2], 0, i % 2 == 1);
+        assert_true(p->groupCount > 0);
+        assertWhole(g, p);
+        vplPatches_Destroy(p);
+    }
+    vplGeometry_Destroy(g);
+}
+
+// The number of patches is the one asked for within 20 %, from what normals alone demand to a quarter of the triangles:
+// nearer to their number, that of triangles of one size jumps.
+TEST(TheCountHolds, 1)
+{
+    vplGeometry* g[2] = {buildGeometry(ballRoom(context, 12, 3, 0.5f, 0)), clutter(context, 1)};
+    for (int which = 0; which < 2; which++) {
+        for (int count = 100; count < g[which]->triangleCount / 4; count += count / 3) {
+            vplPatches* p = groupsOf(g[which], count, 0, true);
+            if (abs(p->patchCount - count) > count / 5) {
+                fail_msg("%d patches instead of %d (scene %d)", p->patchCount, count, which);
+            }
+            vplPatches_Destroy(p);
+        }
+        vplGeometry_Destroy(g[which]);
+    }
+}
+
+// Groups for a length T fit into boxes of that diagonal, and their normals are near the mean. Emitters have their own.
+TEST(GroupsAreSmallAndFaceOneWay, 1)
+{
+    vplScene* scene = ballRoom(context, 5, 3, 0.5f, 0);
+    Shape lamp = icosphere(2);
+    vplObjectDef object = vplDefaultObjectDef();
+    placeShape(&lamp, 0.05f, (double[3]){0, 0, 0}, vplVec(0.3f, 0.3f, 0.3f));
+    object.material = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, 10);
+    assert_int_equal(tryAddShape(scene, &lamp, false, &object), VPL_SUCCESS);
+    freeShape(&lamp);
+    vplGeometry* g = buildGeometry(scene);
+    for (int i = 0; i < 5; i++) {
+        const float size = ldexpf(1.5f, -i);
+        vplPatches* p = groupsOf(g, 1, size, false);
+        assert_true(p->groupCount > 10 && p->groupCount < 2000);
+        for (int k = p->patchCount - p->groupCount; k < p->patchCount; k++) {
+            const vplPatchParts parts = vplPatches_GetParts(p, k);
+            vplVec3 low = {9, 9, 9}, high = {-9, -9, -9}, mean = {0, 0, 0};
+            for (int t = 0; t < parts.count; t++) {
+                const vplTriangleCorners c = vplGeometry_Corners(g, parts.nodes[t]);
+                mean = vplAdd(mean, vplScale((float)vplTriangle_Area(&c), g->normals[parts.nodes[t]]));
+                for (int j = 0; j < 3; j++) {
+                    low = vplVec(fminf(low.x, c.corner[j].x), fminf(low.y, c.corner[j].y),
+                                 fminf(low.z, c.corner[j].z));
+                    high = vplVec(fmaxf(high.x, c.corner[j].x), fmaxf(high.y, c.corner[j].y),
+                                  fmaxf(high.z, c.corner[j].z));
+                }
+                assert_int_equal(g->triangleMaterials[parts.nodes[t]] == object.material,
+                                 g->triangleMaterials[parts.nodes[0]] == object.material);
+            }
+            assert_true(vplLength(vplSub(high, low)) <= size * 1.0001f);
+            for (int t = 0; t < parts.count; t++) {
+                assert_true((double)vplDot(vplNormalize(mean), g->normals[parts.nodes[t]]) >
+                            VPL_PATCH_GROUP_COSINE - 1e-5);
+            }
+        }
+        vplPatches_Destroy(p);
+    }
+    vplGeometry_Destroy(g);
+}
+
+// ---- sides
+
+// Points of the cells of a group lie on its triangles, as many as their area says.
+TEST(CellsShareTheAreaOfAGroup, 1)
+{
+    vplGeometry* g = buildGeometry(ballRoom(context, 1, 3, 0.5f, 0));
+    vplPatches* p = groupsOf(g, 1, 2, false);
+    vplPatchSides* s = sidesOf(p, &(vplVec3){0.2f, 0.8f, 0.5f});
+    int groups = 0;
+    for (int i = 0; i < s->count; i++) {
+        const vplPatchSide* side = &s->sides[i];
+        const vplPatchParts parts = vplPatches_GetParts(p, side->patch);
+        if (!vplPatches_IsGroup(p, side->patch)) {
+            continue;
+        }
+        assertNear((double)side->area,
+                   vplPatches_Area(p, side->patch) * __builtin_popcount(side->open) / VPL_PATCH_CELLS, 1e-6,
+                   "area", i);
+        assert_true(!side->back && parts.count > 20);
+        vplVec3 mean = {0, 0, 0};
+        for (int k = 0; k < 16 * 256; k++) {
+            const vplSidePoint at = vplPatchSide_SampleCell(
+                s, side, k % 16, ((float)(k / 16 % 16) + 0.5f) / 16, ((float)(k / 256) + 0.5f) / 16);
+            const vplTriangleCorners c = vplGeometry_Corners(g, at.triangle);
+            double w[3];
+            vplTriangle_Barycentrics(c.corner, at.at, w);
+            assert_true(w[0] > -1e-5 && w[1] > -1e-5 && w[2] > -1e-5);
+            assert_true(fabsf(vplDot(at.normal, vplSub(at.at, c.corner[0]))) < 1e-6f);
+            assert_int_equal(p->nodes[at.triangle].patch, side->patch);
+            mean = vplAdd(mean, vplScale(1 / 4096.0f, at.at));
+        }
+        assertNear((double)vplLength(vplSub(mean, side->incentre)), 0, 0.01, "mean of points", i);
+        groups++;
+    }
+    assert_true(groups > 8);
+    vplPatchSides_Destroy(s);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+}
+
+// In a closed room that emits E everywhere and reflects half, all radiosities are 2 E: by form factors and by links, as
+// they are, whose rows sum to 1 within some percent, and with corrected rows.
+TEST(AFurnaceWithAGroupedBall, 2)
+{
+    vplGeometry* g = buildGeometry(ballRoom(context, 1, 4, 0.5f, 1));
+    vplPatches* p = groupsOf(g, 300, 0, true);
+    vplPatchSides* s = sidesOf(p, NULL);
+    assert_int_equal(g->triangleCount, 12 + 5120);
+    assert_true(p->groupCount > 30 && s->count <= p->patchCount);
+    for (int way = 0; way < 4; way++) {
+        const bool corrected = way & 1, linked = way & 2;
+        vplLinkDef def = vplDefaultLinkDef();
+        vplFormFactorDef all = vplDefaultFormFactorDef();
+        vplLinks* links = NULL;
+        vplFormFactors* factors = NULL;
+        def.rowSums = all.rowSums = corrected ? VPL_ROW_SUMS_USUAL : VPL_ROW_SUMS_KEEP;
+        def.samples = 16;
+        assert_int_equal(linked ? vplLinks_Create(s, &def, &links) : vplFormFactors_Create(s, &all, &factors),
+                         VPL_SUCCESS);
+        const vplTransport transport = {.sides = s, .links = links, .factors = factors};
+        vplRgb *source = calloc((size_t)s->count, sizeof *source), *b = calloc((size_t)s->count, sizeof *b);
+        double sum = 0, area = 0, worst = 0;
+        for (int i = 0; i < s->count; i++) {
+            b[i] = source[i] = s->sides[i].emission;
+            assertNear((double)source[i].r, VPL_PI, 1e-5, "emission", i);
+        }
+        const vplSolveDef solve = vplDefaultSolveDef();
+        assert_int_equal(vplSolveRadiosity(&transport, &solve, source, b, NULL), VPL_SUCCESS);
+        for (int i = 0; i < s->count; i++) {
+            const double off = (double)b[i].r / (2 * VPL_PI) - 1;
+            sum += (double)s->sides[i].area * off;
+            area += (double)s->sides[i].area;
+            worst = fmax(worst, fabs(off));
+        }
+        assertNear(sum / area, 0, corrected ? 1e-3 : 0.02, "mean error", way);
+        assertNear(worst, 0, corrected ? 0.01 : 0.15, "largest error", way);
+        free(source);
+        free(b);
+        vplLinks_Destroy(links);
+        vplFormFactors_Destroy(factors);
+    }
+    vplPatchSides_Destroy(s);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+}
+
+// ---- pictures
+
+static vplScene* litBall(vplContext* context)
+{
+    vplScene* scene = ballRoom(context, 1, 4, 0.7f, 0);
+    aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(-0.3f, 0.6f, 0.2f), vplVec(0, -1, 0), 3);
+    return scene;
+}
+
+static uint64_t hashOfBall(vplContext* context)
+{
+    vplScene* scene = litBall(context);
+    vplRenderOptions o = radiosityOptions(120);
+    vplRenderStats stats;
+    uint64_t hash = 0;
+    for (int i = 0; i < 2; i++) {
+        o.radiosity.hierarchy = i == 0 ? VPL_HIERARCHY_OFF : VPL_HIERARCHY_ON;
+        vplImage_Destroy(renderScene(scene, &o, &stats));
+        hash = 31 * hash + stats.imageHash;
+    }
+    assert_true(stats.patchGroups > 10 && stats.groupedTriangles > 5000);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    return hash;
+}
+
+TEST_ALONE(GroupsHaveTheSameBitsEverywhere)
+{
+    assertSameEverywhere(hashOfBall);
+}
+
+// Indirect light on a ball of 5,120 triangles in 600 patches, against paths.
+TEST(AGroupedBallLooksLikePaths, 2, SLOW)
+{
+    vplScene* scene = litBall(context);
+    vplImage *truth = pathsOf(scene, VPL_SHOW_INDIRECT, 256),
+             *image = showOf(scene, radiosityOptions(600), VPL_SHOW_INDIRECT);
+    const vplComparison c = compare(truth, image);
+    assertNear(meanOf(image) / meanOf(truth), 1, 0.03, "energy", 0);
+    assertNear(c.rmse / meanOf(truth), 0, 0.08, "relative rmse", 0);
+    vplImage_Destroy(truth);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+}
+
+// Scenes that reach the number of patches by bisection have no groups, and keep every bit.
+TEST(ScenesWithFewTrianglesHaveNoGroups, 2)
+{
+    vplScene* scene = boxRoom(context, 0.7f, false);
+    uint64_t hashes[2];
+    for (int i = 0; i < 2; i++) {
+        vplRenderOptions o = radiosityOptions(200);
+        vplRenderStats stats;
+        o.radiosity.groups = i == 0 ? VPL_PATCH_GROUPS_AUTO : VPL_PATCH_GROUPS_OFF;
+        vplImage_Destroy(renderScene(scene, &o, &stats));
+        assert_int_equal(stats.patchGroups, 0);
+        hashes[i] = stats.imageHash;
+    }
+    assert_true(hashes[0] == hashes[1]);
+    vplScene_Destroy(scene);
+}
+
+// One patch is too few for any scene; as few as normals allow are made, adaptive ones too.
+TEST(OnePatchIsAsFewAsPossible, 2)
+{
+    vplScene* scene = litBall(context);
+    for (int adaptive = 0; adaptive < 2; adaptive++) {
+        vplRenderOptions o = radiosityOptions(adaptive ? 60 : 1);
+        vplRenderStats stats;
+        o.radiosity.placement = adaptive ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
+        vplImage* image = renderScene(scene, &o, &stats);
+        assert_true(stats.patchGroups > 5 && stats.patches < 100 && meanOf(image) > 0);
+        vplImage_Destroy(image);
+    }
+    vplScene_Destroy(scene);
+}
+
+// Groups have no incentre, and without their unoccluded form factors those of samples alone are refused.
+TEST(GroupsHaveNoIncentre, 2)
+{
+    vplScene* scene = litBall(context);
+    vplRenderOptions o = radiosityOptions(120);
+    vplImage* image = NULL;
+    o.radiosity.groups = VPL_PATCH_GROUPS_ON;
+    o.radiosity.formFactors = VPL_FORM_FACTORS_INCENTRE;
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "--patch-groups off"));
+    vplGeometry* g = buildGeometry(scene);
+    vplPatches* p = groupsOf(g, 100, 0, false);
+    vplPatchSides* s = sidesOf(p, &(vplVec3){0, 0.8f, 0});
+    for (int i = 0; i < 2; i++) {
+        vplFormFactorDef def = vplDefaultFormFactorDef();
+        vplFormFactors* f = NULL;
+        def.kind = i == 0 ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
+        def.analytic = false;
+        assert_int_equal(vplFormFactors_Create(s, &def, &f), VPL_INVALID_ARGUMENT);
+        assert_null(f);
+    }
+    vplPatchSides_Destroy(s);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+}
