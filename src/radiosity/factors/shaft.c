@@ -233,5 +233,5 @@ bool vplShaft_IsClear(const vplGeometry* g, const vplShaftEnd* a, const vplShaft
                    .highs = {a->high, b->high},
                    .tolerance = tolerance};
     addPlanes(&shaft);
-    return bvh != NULL && bvh->marks == NULL && search(&shaft, bvh);
+    return bvh != NULL && search(&shaft, bvh); // marks are about rays only
 }

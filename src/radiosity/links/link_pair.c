@@ -197,7 +197,7 @@ static void keep(const Pair* pair, const Measure* m)
     const double area = (double)fmaxf(pair->p->area, pair->q->area);
     const double mean = m->mean * area < 1 ? m->mean : 1 / area; // no form factor is above 1
     pair->answer->verdict = mean > 0 ? VPL_LINK_KEEP : VPL_LINK_NONE;
-    pair->answer->fit.mean = (float)mean;
+    pair->answer->fit.mean = (float)(area * mean);
     const vplLinkNode* nodes[2] = {pair->p, pair->q};
     const vplLinkPoints* points[2] = {&pair->work->points[pair->ids->p], &pair->work->points[pair->ids->q]};
     const double* slopes[2] = {m->p, m->q};
@@ -213,7 +213,7 @@ static void keep(const Pair* pair, const Measure* m)
         }
         fall += most;
     }
-    const double scale = fall > mean ? mean / fall : 1;
+    const double scale = area * (fall > mean ? mean / fall : 1);
     for (int axis = 0; axis < 3; axis++) {
         pair->answer->fit.p[axis] = pair->p->count > 1 ? (float)(scale * m->p[axis]) : 0;
         pair->answer->fit.q[axis] = pair->q->count > 1 ? (float)(scale * m->q[axis]) : 0;

@@ -48,8 +48,8 @@ vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct 
 
 // ---- finding links (link_refine.c)
 
-// cos cos V / (pi r^2) between points of two nodes, 1/m^2, as a linear function: its value at both middles and
-// its slopes per radius of either node. Times the sender's area the value is the form factor.
+// cos cos V / (pi r^2) between points of two nodes, times the larger area, as a linear function: its value at both
+// middles, which is the larger form factor, and its slopes per radius of either node.
 typedef struct vplLinkFit {
     float mean, p[3], q[3];
 } vplLinkFit;
