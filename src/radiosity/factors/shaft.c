@@ -5,6 +5,7 @@
 #include "radiosity/factors/shaft.h"
 
 #include "geometry/bvh.h"
+#include "geometry/triangle.h"
 #include "math/scalar.h"
 
 enum { MOST_PLANES = 12 };
@@ -26,6 +27,7 @@ typedef struct Shaft {
     ShaftPlane planes[MOST_PLANES];
     int planeCount;
     vplBlockers* out; // NULL: the search ends at the first blocker
+    int32_t found;    // the triangle at which the search ended
 } Shaft;
 
 // Adds the plane through the same corner of both boxes, if both lie behind it.
@@ -129,18 +131,15 @@ static bool isBehindEnd(const Shaft* shaft, const vplShaftEnd* end, const float 
     return end->flat && most <= shaft->tolerance;
 }
 
-static bool isBlocker(const Shaft* shaft, const vplTriangleBlock* block, int lane)
+static bool blocks(const Shaft* shaft, const float p[3][3], int triangle)
 {
-    float p[3][3], range[2] = {0, 0};
-    for (int i = 0; i < 9; i++) {
-        p[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
-    }
+    float range[2] = {0, 0};
     const bool ends = shaft->a == NULL;
     if (missesTriangle(shaft, p) ||
         (ends && (isBehindEnd(shaft, shaft->ends[0], p) || isBehindEnd(shaft, shaft->ends[1], p)))) {
         return false;
     }
-    const vplVec3 normal = shaft->geometry->normals[block->id[lane]];
+    const vplVec3 normal = shaft->geometry->normals[triangle];
     const float n[3] = {normal.x, normal.y, normal.z};
     if (ends) {
         extendByBox(shaft->ends[0], n, p[0], range);
@@ -152,8 +151,27 @@ static bool isBlocker(const Shaft* shaft, const vplTriangleBlock* block, int lan
     return range[0] < -shaft->tolerance && range[1] > shaft->tolerance;
 }
 
+static bool isBlocker(const Shaft* shaft, const vplTriangleBlock* block, int lane)
+{
+    float p[3][3];
+    for (int i = 0; i < 9; i++) {
+        p[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
+    }
+    return blocks(shaft, p, block->id[lane]);
+}
+
+static bool isBlockedBy(const Shaft* shaft, int32_t triangle)
+{
+    const vplTriangleCorners t = vplGeometry_Corners(shaft->geometry, triangle);
+    float p[3][3];
+    for (int i = 0; i < 9; i++) {
+        p[i / 3][i % 3] = vplComponent(t.corner[i / 3], i % 3);
+    }
+    return blocks(shaft, p, triangle);
+}
+
 // False if there are too many blockers.
-static bool addBlockers(const Shaft* shaft, const vplTriangleBlock* block)
+static bool addBlockers(Shaft* shaft, const vplTriangleBlock* block)
 {
     vplBlockers* out = shaft->out;
     for (int lane = 0; lane < VPL_BVH_WIDTH && block->id[lane] >= 0; lane++) {
@@ -161,6 +179,7 @@ static bool addBlockers(const Shaft* shaft, const vplTriangleBlock* block)
             continue;
         }
         if (out == NULL || out->count == VPL_MOST_BLOCKERS) {
+            shaft->found = block->id[lane];
             return false;
         }
         int k = out->count++;
@@ -173,7 +192,7 @@ static bool addBlockers(const Shaft* shaft, const vplTriangleBlock* block)
 }
 
 // Searches the tree or, where it has no nodes, its few blocks. False if there are too many blockers.
-static bool search(const Shaft* shaft, const vplBvh* bvh)
+static bool search(Shaft* shaft, const vplBvh* bvh)
 {
     int32_t stack[VPL_BVH_DEPTH * (VPL_BVH_WIDTH - 1) + 1] = {0};
     int count = bvh->nodes != NULL ? 1 : bvh->blockCount;
@@ -224,7 +243,8 @@ void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFa
     }
 }
 
-bool vplShaft_IsClear(const vplGeometry* g, const vplShaftEnd* a, const vplShaftEnd* b, float tolerance)
+bool vplShaft_IsClear(const vplGeometry* g, const vplShaftEnd* a, const vplShaftEnd* b, float tolerance,
+                      int32_t* blocker)
 {
     const vplBvh* bvh = g->rayTree;
     Shaft shaft = {.geometry = g,
@@ -233,5 +253,10 @@ bool vplShaft_IsClear(const vplGeometry* g, const vplShaftEnd* a, const vplShaft
                    .highs = {a->high, b->high},
                    .tolerance = tolerance};
     addPlanes(&shaft);
-    return bvh != NULL && search(&shaft, bvh); // marks are about rays only
+    if (bvh == NULL || (*blocker >= 0 && isBlockedBy(&shaft, *blocker))) {
+        return false;
+    }
+    const bool clear = search(&shaft, bvh); // the tree's marks are about rays only
+    *blocker = clear ? -1 : shaft.found;
+    return clear;
 }

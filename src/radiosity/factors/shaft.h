@@ -28,7 +28,8 @@ typedef struct vplShaftEnd {
 
 // Tests that no triangle reaches between sides at either end. A triangle blocks nothing if it is behind the plane
 // of an end, or in it, or has both boxes on one side, to `tolerance` metres. May miss that the way is clear.
+// *blocker: a triangle to try first, -1: none; then the one that was found.
 bool vplShaft_IsClear(const vplGeometry* geometry, const vplShaftEnd* a, const vplShaftEnd* b,
-                      float tolerance);
+                      float tolerance, int32_t* blocker);
 
 #endif

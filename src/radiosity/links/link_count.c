@@ -26,7 +26,8 @@ typedef struct Count {
 static void push(Count* c, int p, int q, const vplLinkAnswer* answer)
 {
     c->parts[c->partCount++] =
-        (vplLinkPair){.p = p, .q = q, .visible = answer->visible, .clear = answer->clear};
+        (vplLinkPair){
+        .p = p, .q = q, .visible = answer->visible, .clear = answer->clear, .blocker = answer->blocker};
 }
 
 // Judges a pair of this level.
@@ -35,7 +36,7 @@ static void judge(Count* c, const vplLinkPair* pair)
     const vplLinkNode *nodes = c->work.tree->nodes, *p = &nodes[pair->p], *q = &nodes[pair->q];
     if (pair->p == pair->q) {
         for (int k = 0; k < 3 && !p->flat && p->children >= 0; k++) {
-            push(c, p->children + k % 2, p->children + (k + 1) / 2, &(vplLinkAnswer){.visible = false});
+            push(c, p->children + k % 2, p->children + (k + 1) / 2, &(vplLinkAnswer){.blocker = -1});
         }
         return;
     }
@@ -74,7 +75,7 @@ static vplResult count(Count* c, vplArena* scratch, struct vplLinkTree* tree)
     c->work.tree = tree;
     c->work.points = vplArena_Alloc(scratch, (size_t)tree->nodeCount, sizeof *c->work.points);
     TRY(vplArena_Check(scratch));
-    c->pairs[0] = (vplLinkPair){.p = 0, .q = 0, .visible = false}; // the root and itself
+    c->pairs[0] = (vplLinkPair){.p = 0, .q = 0, .blocker = -1}; // the root and itself
     c->count = tree->nodeCount > 0;
     for (uint64_t level = 0; c->count > 0; level++) {
         c->widest = fmax(c->widest, c->weight * c->count);
@@ -90,7 +91,7 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
                                  double* scratchOut)
 {
     struct vplLinkTree tree = {.nodes = NULL};
-    Count c = {.work = {.sides = sides, .def = def}, .weight = 1};
+    Count c = {.work = {.sides = sides, .def = def, .allowed = vplAllowedLinkError(def, sides->count)}, .weight = 1};
     vplArena* scratch = vplArena_Create(sides->context);
     vplResult result = vplArena_Check(scratch);
     if (result == VPL_SUCCESS) {

@@ -32,8 +32,9 @@ static void judgeTask(void* data, int task, int worker)
             r->answers[i] = vplJudgePair(&r->work, pair);
         } else { // a node and itself
             const vplLinkNode* node = &r->work.tree->nodes[pair->p];
-            r->answers[i] = (vplLinkAnswer){.verdict = node->flat || node->children < 0 ? VPL_LINK_NONE
-                                                                                        : VPL_LINK_DIVIDE_P};
+            r->answers[i] = (vplLinkAnswer){
+                .verdict = node->flat || node->children < 0 ? VPL_LINK_NONE : VPL_LINK_DIVIDE_P,
+                .blocker = -1};
         }
     }
 }
@@ -42,8 +43,12 @@ static void judgeTask(void* data, int task, int worker)
 static void push(Refinement* r, int p, int q, const vplLinkPair* pair, const vplLinkAnswer* answer,
                  float share)
 {
-    r->pairs[r->pairCount++] = (vplLinkPair){
-        .p = p, .q = q, .visible = answer->visible, .clear = answer->clear, .weight = share * pair->weight};
+    r->pairs[r->pairCount++] = (vplLinkPair){.p = p,
+                                             .q = q,
+                                             .visible = answer->visible,
+                                             .clear = answer->clear,
+                                             .blocker = answer->blocker,
+                                             .weight = share * pair->weight};
 }
 
 static void divide(Refinement* r, const vplLinkPair* pair, const vplLinkAnswer* answer)
@@ -107,7 +112,7 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
     TRY(vplReserve(r->context, &r->pairs, &r->pairCapacity, 1, sizeof *r->pairs));
     if (nodes > 0) {
         TRY(vplParallelForAsking(r->context, (nodes + TASK - 1) / TASK, drawPointsTask, r));
-        r->pairs[r->pairCount++] = (vplLinkPair){.p = 0, .q = 0, .visible = false, .weight = 1};
+        r->pairs[r->pairCount++] = (vplLinkPair){.p = 0, .q = 0, .blocker = -1, .weight = 1};
     }
     double done = 0;
     while (r->pairCount > 0) {
@@ -124,7 +129,11 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
 vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
                        vplLinkList* list)
 {
-    Refinement r = {.work = {.sides = sides, .tree = tree, .def = def}, .context = sides->context};
+    Refinement r = {.work = {.sides = sides,
+                             .tree = tree,
+                             .def = def,
+                             .allowed = vplAllowedLinkError(def, sides->count)},
+                    .context = sides->context};
     vplArena* scratch = vplArena_Create(sides->context);
     const vplResult result = refine(&r, scratch, list);
     vplFree(sides->context, r.pairs);

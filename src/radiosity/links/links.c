@@ -8,7 +8,7 @@ enum { LINK_COOKIE = 0x56504cb4, MOST_SAMPLES = 1024 };
 
 vplLinkDef vplDefaultLinkDef(void)
 {
-    return (vplLinkDef){.error = 0.00025, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
+    return (vplLinkDef){.error = 0.00015, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
 }
 
 static vplResult checkDef(const vplPatchSides* sides, const vplLinkDef* def)

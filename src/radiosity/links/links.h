@@ -82,8 +82,12 @@ typedef struct vplLinkWork {
     const vplPatchSides* sides;
     const struct vplLinkTree* tree;
     const vplLinkDef* def;
+    double allowed;        // error of one link
     vplLinkPoints* points; // of each node
 } vplLinkWork;
+
+// The error of one link that def->error means for so many sides.
+double vplAllowedLinkError(const vplLinkDef* def, int sides);
 
 // Draws a node's points on its open cells, stratified by area, and fills work->points[node].
 void vplLinkPoints_Draw(const vplLinkWork* work, int node);
@@ -119,7 +123,8 @@ typedef struct vplLinkPair {
     // Some ray between their parents was not blocked. If form factors vary too much over such a pair, it is
     // divided without further rays.
     bool visible;
-    bool clear;   // nothing is between their parents
+    bool clear;      // nothing is between their parents
+    int32_t blocker; // a triangle between their parents, usually between them as well; -1: none is known
     float weight; // the fraction of all work, for the progress; halved by each division
 } vplLinkPair;
 
@@ -133,6 +138,7 @@ typedef enum vplLinkVerdict {
 typedef struct vplLinkAnswer {
     vplLinkVerdict verdict;
     bool visible, clear;
+    int32_t blocker;
     vplLinkFit fit; // if kept
     int rays;
 } vplLinkAnswer;
