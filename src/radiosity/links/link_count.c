@@ -25,8 +25,7 @@ typedef struct Count {
 // Every pair has at most three parts.
 static void push(Count* c, int p, int q, const vplLinkAnswer* answer)
 {
-    c->parts[c->partCount++] =
-        (vplLinkPair){
+    c->parts[c->partCount++] = (vplLinkPair){
         .p = p, .q = q, .visible = answer->visible, .clear = answer->clear, .blocker = answer->blocker};
 }
 
@@ -91,7 +90,7 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
                                  double* scratchOut)
 {
     struct vplLinkTree tree = {.nodes = NULL};
-    Count c = {.work = {.sides = sides, .def = def, .allowed = vplAllowedLinkError(def, sides->count)}, .weight = 1};
+    Count c = {.work = {.sides = sides, .def = def, .allowed = vplAllowedLinkError(sides, def)}, .weight = 1};
     vplArena* scratch = vplArena_Create(sides->context);
     vplResult result = vplArena_Check(scratch);
     if (result == VPL_SUCCESS) {

@@ -59,10 +59,11 @@ static const vplPatchSide* firstSide(const Pair* pair, const vplLinkNode* node)
     return &pair->work->sides->sides[pair->work->tree->order[node->first]];
 }
 
-// The error of the patches themselves falls with their number, and that of links must fall with it.
-double vplAllowedLinkError(const vplLinkDef* def, int sides)
+// The error of patches falls with their number, and that of links must fall with it; groups of triangles err by more.
+double vplAllowedLinkError(const vplPatchSides* sides, const vplLinkDef* def)
 {
-    return sides > MANY_SIDES ? def->error * sqrt((double)MANY_SIDES / sides) : def->error;
+    const bool less = sides->count > MANY_SIDES && sides->patches->groupCount == 0;
+    return less ? def->error * sqrt((double)MANY_SIDES / sides->count) : def->error;
 }
 
 // ---- bounds
@@ -260,8 +261,8 @@ static bool isClear(const Pair* pair)
         const vplShaftEnd p = endOf(pair, pair->p), q = endOf(pair, pair->q);
         const float largest = fmaxf(fmaxf(vplLargestOf(pair->p->low), vplLargestOf(pair->p->high)),
                                     fmaxf(vplLargestOf(pair->q->low), vplLargestOf(pair->q->high)));
-        pair->answer->clear =
-            vplShaft_IsClear(pair->work->sides->patches->geometry, &p, &q, largest * 0x1p-21f, &pair->answer->blocker);
+        pair->answer->clear = vplShaft_IsClear(pair->work->sides->patches->geometry, &p, &q,
+                                               largest * 0x1p-21f, &pair->answer->blocker);
     }
     return pair->answer->clear;
 }
@@ -302,19 +303,22 @@ static void findErrors(const Pair* pair, Measure* m)
 }
 
 // Casts rays unless nothing is in the way, finds which fraction of the exchange they let through, and measures what
-// is left. Few rays are enough where the pair will be divided, or if a dark one hides next to nothing.
+// is left. A rough pair that will be divided needs none yet, and few are enough to see that a rough pair is visible, or
+// where little is exchanged.
 static void darken(const Pair* pair, vplLinkTerms* terms, bool rough, Measure* m)
 {
     vplLinkAnswer* answer = pair->answer;
+    const double open = pair->sent * m->mean, allowed = pair->work->allowed;
     if (isClear(pair)) {
         answer->visible = true;
         return;
     }
+    if (rough && open > HIDDEN * allowed) {
+        return;
+    }
     vplLinkSeen seen = {.open = 0};
     cast(pair, terms, 0, FEW_RAYS, &seen);
-    const double open = pair->sent * m->mean, allowed = pair->work->allowed;
-    const bool dividedAnyway = rough && (seen.visible > 0 || open > HIDDEN * allowed);
-    if (!dividedAnyway && (seen.visible > 0 || open > allowed)) {
+    if (open > allowed && !(rough && seen.visible > 0)) {
         cast(pair, terms, FEW_RAYS, VPL_MOST_LINK_RAYS, &seen);
     }
     answer->visible = seen.visible > 0;
@@ -353,7 +357,8 @@ static void measureGroups(const Pair* pair, double bound, vplLinkTerms* terms)
 
 vplLinkAnswer vplJudgePair(const vplLinkWork* work, const vplLinkPair* ids)
 {
-    vplLinkAnswer answer = {.verdict = VPL_LINK_NONE, .visible = ids->visible, .clear = ids->clear, .blocker = ids->blocker};
+    vplLinkAnswer answer = {
+        .verdict = VPL_LINK_NONE, .visible = ids->visible, .clear = ids->clear, .blocker = ids->blocker};
     const vplLinkNode *p = &work->tree->nodes[ids->p], *q = &work->tree->nodes[ids->q];
     const Pair pair = {
         .work = work, .ids = ids, .p = p, .q = q, .sent = fmax(sentArea(p), sentArea(q)), .answer = &answer};

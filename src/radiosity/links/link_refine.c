@@ -32,9 +32,9 @@ static void judgeTask(void* data, int task, int worker)
             r->answers[i] = vplJudgePair(&r->work, pair);
         } else { // a node and itself
             const vplLinkNode* node = &r->work.tree->nodes[pair->p];
-            r->answers[i] = (vplLinkAnswer){
-                .verdict = node->flat || node->children < 0 ? VPL_LINK_NONE : VPL_LINK_DIVIDE_P,
-                .blocker = -1};
+            r->answers[i] = (vplLinkAnswer){.verdict = node->flat || node->children < 0 ? VPL_LINK_NONE
+                                                                                        : VPL_LINK_DIVIDE_P,
+                                            .blocker = -1};
         }
     }
 }
@@ -129,11 +129,9 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
 vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
                        vplLinkList* list)
 {
-    Refinement r = {.work = {.sides = sides,
-                             .tree = tree,
-                             .def = def,
-                             .allowed = vplAllowedLinkError(def, sides->count)},
-                    .context = sides->context};
+    Refinement r = {
+        .work = {.sides = sides, .tree = tree, .def = def, .allowed = vplAllowedLinkError(sides, def)},
+        .context = sides->context};
     vplArena* scratch = vplArena_Create(sides->context);
     const vplResult result = refine(&r, scratch, list);
     vplFree(sides->context, r.pairs);

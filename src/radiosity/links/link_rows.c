@@ -99,8 +99,7 @@ static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, co
     }
 }
 
-static vplResult fitRows(vplLinks* links, vplArena* scratch, const EnclosedTest* test,
-                         float* rowSums)
+static vplResult fitRows(vplLinks* links, vplArena* scratch, const EnclosedTest* test, float* rowSums)
 {
     const vplRowSums rows = test->def->rowSums;
     const int count = links->sideCount, rounds = rows == VPL_ROW_SUMS_KEEP ? 0 : ROUNDS;

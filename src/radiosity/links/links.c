@@ -53,7 +53,8 @@ static vplResult sortLinks(vplArena* arena, struct vplLinkTree* tree, const vplL
         for (int k = 0; k < 2; k++) {
             const int32_t receiver = k ? link->q : link->p, sender = k ? link->p : link->q;
             const float *here = k ? link->fit.q : link->fit.p, *there = k ? link->fit.p : link->fit.q;
-            const float area = tree->nodes[sender].area / fmaxf(tree->nodes[sender].area, tree->nodes[receiver].area);
+            const float area =
+                tree->nodes[sender].area / fmaxf(tree->nodes[sender].area, tree->nodes[receiver].area);
             vplLinkEnd* end = &tree->ends[next[receiver]++];
             *end = (vplLinkEnd){.sender = sender, .factor = area * link->fit.mean};
             for (int axis = 0; axis < 3; axis++) {

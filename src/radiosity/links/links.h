@@ -86,8 +86,8 @@ typedef struct vplLinkWork {
     vplLinkPoints* points; // of each node
 } vplLinkWork;
 
-// The error of one link that def->error means for so many sides.
-double vplAllowedLinkError(const vplLinkDef* def, int sides);
+// The error of one link that def->error means for these sides.
+double vplAllowedLinkError(const vplPatchSides* sides, const vplLinkDef* def);
 
 // Draws a node's points on its open cells, stratified by area, and fills work->points[node].
 void vplLinkPoints_Draw(const vplLinkWork* work, int node);
@@ -125,7 +125,7 @@ typedef struct vplLinkPair {
     bool visible;
     bool clear;      // nothing is between their parents
     int32_t blocker; // a triangle between their parents, usually between them as well; -1: none is known
-    float weight; // the fraction of all work, for the progress; halved by each division
+    float weight;    // the fraction of all work, for the progress; halved by each division
 } vplLinkPair;
 
 typedef enum vplLinkVerdict {
