@@ -136,7 +136,7 @@ typedef enum vplHierarchy {
 } vplHierarchy;
 
 // Patch sides beyond which VPL_HIERARCHY_AUTO uses links: the most that VPL_MAX_FORM_FACTOR_BYTES allows for
-// all pairs. The limit is no lower because links, though faster from about 5,000 sides on, err more:
+// all pairs. The limit is no lower because links are no faster up to about 8,000 sides, and err more:
 // asking for more patches should not make a picture worse (src/radiosity/README.md).
 enum { VPL_ALL_PAIRS = 16384 };
 
