@@ -221,14 +221,53 @@ TEST(IrradianceIsThatOfAllPairsToTheErrorAskedFor, 2, SLOW)
 {
     Room room;
     openRoom(&room, boxInRoom(context), 1000);
-    // Measured: 0.012; with error 0.02 0.032, and 0.0094 with 20 times the links.
-    assert_true(errorOf(&room, vplDefaultLinkDef().error) < 0.016);
+    const double fine = errorOf(&room, vplDefaultLinkDef().error);
+    const int64_t many = room.links->linkCount;
     vplLinks_Destroy(room.links);
-    const double coarse = errorOf(&room, 0.02);
-    const int64_t few = room.links->linkCount;
-    vplLinks_Destroy(room.links);
-    const double fine = errorOf(&room, 0.0005);
-    assert_true(fine < 0.5 * coarse && room.links->linkCount > 4 * few);
+    const double coarse = errorOf(&room, 0.004);
+    // Measured: 0.0045 and 0.0091, a part of which are rays between sides.
+    assert_true(fine < 0.006 && fine < 0.6 * coarse && many > 4 * room.links->linkCount);
+    closeRoom(&room);
+}
+
+// A floor under a distant square: light over it is smooth, though the links' receivers are groups of patches.
+TEST(LightOverAGroupHasASlope, 2)
+{
+    Room room;
+    vplScene* scene = sceneOf(context, 0.5f);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -VPL_PI / 2, 0, vplVec(4, 4, 1));
+    addThing(scene, VPL_OBJECT_QUAD, addMaterial(scene, (vplRgb){0, 0, 0}, 1), vplVec(3, 4, 0), VPL_PI / 2, 0,
+             vplVec(1, 1, 1));
+    openRoom(&room, scene, 2000);
+    vplLinkDef def = vplDefaultLinkDef();
+    def.rowSums = VPL_ROW_SUMS_KEEP;
+    linkRoom(&room, &def);
+    vplRgb* b = evenLight(&room);
+    for (int i = 0; i < room.sides->count; i++) {
+        b[i].r = room.sides->sides[i].normal.y < 0 ? 1 : 0;
+    }
+    vplRgb* e = gather(&room, NULL, b);
+    const float y = 4, low = -0.5f, high = 0.5f;
+    const vplVec3 halves[2][3] = {{{3 + low, y, low}, {3 + high, y, low}, {3 + high, y, high}},
+                                  {{3 + low, y, low}, {3 + high, y, high}, {3 + low, y, high}}};
+    double worst = 0, most = 0, least = INFINITY;
+    for (int i = 0; i < room.sides->count; i++) {
+        const vplPatchSide* s = &room.sides->sides[i];
+        if (s->normal.y > 0) {
+            const vplVec3 at =
+                vplScale(1.0f / 3, vplAdd(s->corners[0], vplAdd(s->corners[1], s->corners[2])));
+            const double wanted =
+                vplPointFormFactor(at, s->normal, halves[0]) + vplPointFormFactor(at, s->normal, halves[1]);
+            worst = fmax(worst, fabs((double)e[i].r - wanted) / wanted);
+            most = fmax(most, wanted);
+            least = fmin(least, wanted);
+        }
+    }
+    // Measured: 0.017 at the darkest corner with 556 links for 2,000 patches, over which light varies by 6.5.
+    assert_true(most > 5 * least && worst < 0.025);
+    assert_true(room.links->linkCount < room.sides->count / 2);
+    free(b);
+    free(e);
     closeRoom(&room);
 }
 
@@ -295,7 +334,8 @@ TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
     int sides[2];
     for (int k = 0; k < 2; k++) {
         Room room;
-        const vplLinkDef def = vplDefaultLinkDef();
+        vplLinkDef def = vplDefaultLinkDef();
+        def.error = k ? 0.00025 * sqrt(2) : 0.00025; // 0.00025 for one link: from 4,000 sides on it falls
         openRoom(&room, boxInRoom(context), k ? 8000 : 1000);
         const size_t before = vplContext_GetBytes(context);
         linkRoom(&room, &def);
@@ -303,10 +343,11 @@ TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
         links[k] = room.links->linkCount;
         rays[k] = room.links->rays;
         assert_int_equal(room.links->groupCount, sides[k] - 1);
-        assert_true(vplContext_GetBytes(context) - before < 1000 * (size_t)sides[k]);
+        assert_true(vplContext_GetBytes(context) - before < 10000 * (size_t)sides[k]);
         closeRoom(&room);
     }
-    // Measured: 3.4 times the links and 3.9 times the rays, of which 32 per side are the side's own.
+    // Measured: 3.2 times the links and 2.3 times the rays, of which 32 per side are the side's own; 8.7 and 3.7 kB
+    // per side.
     assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 5 * rays[0]);
 }
 

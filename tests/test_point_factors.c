@@ -175,14 +175,11 @@ TEST(OneSampleBetweenCentresIsThatOfTheTable, 1)
             continue;
         }
         assert_int_equal(sscanf(cell(&t, row, "parameters"), "d=%lf", &d), 1);
-        vplPointPairs pairs = {0};
-        float terms[VPL_SIDE_LANES];
-        vplSetLane(pairs.nx, 0, (vplVec3){0, 0, 1});
-        vplSetLane(pairs.y, 0, (vplVec3){0, 0, (float)d});
-        vplSetLane(pairs.ny, 0, (vplVec3){0, 0, -1});
-        kernels->pairTerms(&pairs, terms);
+        vplLinkPoints p = {.normal[2][0] = 1}, q = {.at[2][0] = (float)d, .normal[2][0] = -1};
+        vplLinkTerms terms;
+        kernels->linkTerms(&p, &q, &terms);
         const double wanted = number(&t, row, "one_sample_centre_estimate");
-        assertRelative((double)terms[0], wanted, 4e-7, cell(&t, row, "parameters"), row);
+        assertRelative((double)terms.of[0][0], wanted, 4e-7, cell(&t, row, "parameters"), row);
         compared++;
     }
     assert_int_equal(compared, 13);

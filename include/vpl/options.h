@@ -134,9 +134,8 @@ typedef enum vplHierarchy {
 } vplHierarchy;
 
 // Patch sides beyond which VPL_HIERARCHY_AUTO uses links: the most that VPL_MAX_FORM_FACTOR_BYTES allows for
-// all pairs. The limit is no lower because links are five times as fast there, but their error is ten to
-// twenty times as large (bench/form_factors, bench/radiosity_error): asking for more patches should not make
-// a picture worse.
+// all pairs. The limit is no lower because links are no faster up to about 8,000 sides, and err more:
+// asking for more patches should not make a picture worse (src/radiosity/README.md).
 enum { VPL_ALL_PAIRS = 16384 };
 
 // Distribution of patch sizes.

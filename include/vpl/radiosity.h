@@ -164,12 +164,16 @@ double vplPointFormFactor(vplVec3 point, vplVec3 normal, const vplVec3 triangle[
 // ---- the hierarchy: form factors between patches, and between groups of patches that are far apart
 
 typedef struct vplLinkDef {
-    // Links are divided until the error of the light that they carry is below this fraction of all that their
-    // receiver gets, (0, 1]; default 0.002.
+    // Links are divided until the exchange of two groups differs from a linear function of the place on either by
+    // less than this fraction of all that their receiver gets, (0, 1]; default 0.00015; half of it where something is
+    // between them. Beyond 4,000 sides, none of which is a group of triangles, it falls with the root of their
+    // number. The number of links rises by 1.7 to 1.9 where the error is halved.
     double error;
-    int samples; // pairs of points with a shadow ray per link, [1, 1024]; default 4
-    // Default VPL_ROW_SUMS_USUAL: normalise sides from which all of 32 rays hit sides, clamp others. Links
-    // err by some percent, and a clamp alone would darken the room by that much.
+    // Shadow rays between two sides, [1, 1024], of which up to 64 are cast; default 4. Groups take 16 to 64, unless
+    // nothing is between them.
+    int samples;
+    // Default VPL_ROW_SUMS_USUAL: normalise sides from which all of 32 rays hit sides and whose form factors sum to
+    // 0.97 or more, clamp others.
     vplRowSums rowSums;
     uint64_t seed; // default 0
     vplProgressFcn* progress;

@@ -74,20 +74,36 @@ typedef void vplPointTermsFcn(const float point[3], const float normal[3], const
                               const float toNormal[3][VPL_SIDE_LANES], float termOut[VPL_SIDE_LANES],
                               float directionOut[3][VPL_SIDE_LANES]);
 
-// Sixteen pairs of points, x on one surface and y on another, with their normals.
-typedef struct vplPointPairs {
-    float x[3][VPL_SIDE_LANES], nx[3][VPL_SIDE_LANES]; // [axis]
-    float y[3][VPL_SIDE_LANES], ny[3][VPL_SIDE_LANES];
-} vplPointPairs;
-
-// cos cos / (pi r^2) of each pair, 1/m^2; 0 where one point is behind the other's surface.
-typedef void vplPairTermsFcn(const vplPointPairs* pairs, float termOut[VPL_SIDE_LANES]);
-
 // The sum of row[j] scale[j].
 typedef double vplScaledSumFcn(const float* row, const double* scale, int count);
 
 // row[j] *= rowScale scale[j].
 typedef void vplScaleRowFcn(float* row, double rowScale, const double* scale, int count);
+
+// ---- links (links/links_kernel.c)
+
+// Each node of the hierarchy has so many points, by which all its pairs are judged.
+enum { VPL_LINK_POINTS = 8 };
+
+// The points of a node, and the least-squares fit of a linear function to values at them: the function is the
+// sum of weight times value at the node's middle, and rises by the sum of slope times value per radius of the
+// node along each axis.
+typedef struct vplLinkPoints {
+    float at[3][VPL_LINK_POINTS], normal[3][VPL_LINK_POINTS]; // [axis]
+    float place[3][VPL_LINK_POINTS];                          // from the node's middle, in radii
+    float weight[VPL_LINK_POINTS], slope[3][VPL_LINK_POINTS];
+    int triangle[VPL_LINK_POINTS];
+} vplLinkPoints;
+
+// cos cos / (pi r^2) between point i of p and point k of q, 1/m^2; 0 where one point is behind the other's
+// surface.
+typedef struct vplLinkTerms {
+    float of[VPL_LINK_POINTS][VPL_LINK_POINTS];
+    float rows[VPL_LINK_POINTS];    // at points of p, the fit over q at q's middle
+    float columns[VPL_LINK_POINTS]; // at points of q, the fit over p at p's middle
+} vplLinkTerms;
+
+typedef void vplLinkTermsFcn(const vplLinkPoints* p, const vplLinkPoints* q, vplLinkTerms* termsOut);
 
 // ---- solvers (solve/solve_kernel.c)
 
@@ -126,7 +142,7 @@ typedef vplTileFcn vplAddPatchTileFcn;
 #define VPL_RADIOSITY_KERNELS(X)                                                                             \
     X(vplEstimateFactorsFcn, estimateFactors, vplEstimateFactors)                                            \
     X(vplPointTermsFcn, pointTerms, vplPointTerms)                                                           \
-    X(vplPairTermsFcn, pairTerms, vplPairTerms)                                                              \
+    X(vplLinkTermsFcn, linkTerms, vplLinkTerms_Find)                                                         \
     X(vplScaledSumFcn, scaledSum, vplScaledSum)                                                              \
     X(vplScaleRowFcn, scaleRow, vplScaleRow)                                                                 \
     X(vplRowDotFcn, rowDot, vplRowDot)                                                                       \

@@ -270,7 +270,7 @@ static vplWork workOf(const Scale* s, vplStageId id)
         break;
     case VPL_STAGE_FORM_FACTORS: // groups have more samples, and no shaft finds what may be in the way
         w.counts[FORM_FACTOR] = p->linked
-                                    ? 4000 * s->sides
+                                    ? 20000 * s->sides
                                     : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) *
                                                             s->depth * (p->patchGroups > 0 ? 3 : 1);
         break;

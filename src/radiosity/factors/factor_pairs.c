@@ -59,35 +59,6 @@ static uint32_t usedLanes(const vplFactorBlock* block)
     return used;
 }
 
-// The fraction of the exchange of two whole sides that is between their open cells, estimated by the cells'
-// centres.
-static double openFraction(const vplPatchSide* a, const vplPatchSide* b)
-{
-    double all = 0, open = 0;
-    for (int i = 0; i < VPL_PATCH_CELLS; i++) {
-        const vplVec3 p = vplPatchSide_CellCentre(a, i);
-        for (int k = 0; k < VPL_PATCH_CELLS; k++) {
-            const vplVec3 q = vplPatchSide_CellCentre(b, k);
-            const double x = (double)(q.x - p.x), y = (double)(q.y - p.y), z = (double)(q.z - p.z);
-            const double square = x * x + y * y + z * z;
-            const double ca = x * (double)a->normal.x + y * (double)a->normal.y + z * (double)a->normal.z;
-            const double cb = -(x * (double)b->normal.x + y * (double)b->normal.y + z * (double)b->normal.z);
-            const double part = ca > 0 && cb > 0 ? ca / square * (cb / square) : 0;
-            all += part;
-            open += (a->open >> i & 1) && (b->open >> k & 1) ? part : 0;
-        }
-    }
-    return all > 0 ? open / all : 0;
-}
-
-// The mean of cos cos / (pi r^2) over the open cells of two sides, by the contour integral.
-static float exactMean(const vplPatchSide* a, const vplPatchSide* b)
-{
-    const double exchange = vplTriangleExchange(a->corners, b->corners, &vplEdgesQuick);
-    const double fraction = (a->open & b->open) == VPL_ALL_CELLS ? 1 : openFraction(a, b);
-    return vplClampToFloat(exchange * fraction / (double)a->area / (double)b->area);
-}
-
 // Corners this near to a plane count as in it: eight times the rounding of the blocks' largest coordinate. Sides
 // in one plane do not exchange light.
 static float toleranceOf(const vplFactorBlock* a, const vplFactorBlock* b)
@@ -193,8 +164,8 @@ static void estimateRow(Tile* tile, int i)
     }
     for (uint32_t left = tile->pairs[i] & estimate.near & ~groups; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
-        tile->exact[i][l] = exactMean(&work->sides->sides[tile->row * LANES + i],
-                                      &work->sides->sides[tile->column * LANES + l]);
+        tile->exact[i][l] = vplSideExchange(&work->sides->sides[tile->row * LANES + i],
+                                            &work->sides->sides[tile->column * LANES + l]);
         tile->analyticPairs++;
     }
     for (uint32_t left = tile->pairs[i]; left != 0; left &= left - 1) {

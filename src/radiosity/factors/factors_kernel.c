@@ -109,21 +109,6 @@ void VPL_KERNEL(vplPointTerms)(const float point[3], const float normal[3], cons
     memcpy(directionOut, direction, sizeof direction);
 }
 
-void VPL_KERNEL(vplPairTerms)(const vplPointPairs* restrict pairs, float termOut[restrict LANES])
-{
-    const float scale = (float)(1 / VPL_PI);
-    for (int l = 0; l < LANES; l++) {
-        const vplVec3 way = vplSub(vplGetLane(pairs->y, l), vplGetLane(pairs->x, l));
-        const float square = vplDot(way, way);
-        const float there = vplDot(way, vplGetLane(pairs->nx, l)),
-                    back = -vplDot(way, vplGetLane(pairs->ny, l));
-        const float least = square > 1e-37f ? square : 1e-37f;
-        const float term = scale * (there / least) * (back / least);
-        const bool facing = (there > 0) & (back > 0);
-        termOut[l] = facing ? term : 0.0f;
-    }
-}
-
 // ---- rows
 
 double VPL_KERNEL(vplScaledSum)(const float* row, const double* scale, int count)

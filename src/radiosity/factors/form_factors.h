@@ -20,6 +20,9 @@ typedef struct vplFactorWork {
     vplFormFactors* factors; // the result
 } vplFactorWork;
 
+// The unoccluded mean of cos cos / (pi r^2) over the open cells of two sides, by the contour integral, 1/m^2.
+float vplSideExchange(const vplPatchSide* a, const vplPatchSide* b);
+
 // Fills `blocks`.
 vplResult vplFactorWork_MakeBlocks(vplFactorWork* work);
 

@@ -5,6 +5,7 @@
 #include "radiosity/factors/shaft.h"
 
 #include "geometry/bvh.h"
+#include "geometry/triangle.h"
 #include "math/scalar.h"
 
 enum { MOST_PLANES = 12 };
@@ -15,25 +16,27 @@ typedef struct ShaftPlane {
     double nu, nv, offset;
 } ShaftPlane;
 
-// The space between two blocks: inside the bounds of both, and behind all planes.
+// The space between two blocks, or two ends: inside the bounds of both, and behind all planes.
 typedef struct Shaft {
     const vplGeometry* geometry;
-    const vplFactorBlock *a, *b;
+    const vplFactorBlock *a, *b; // NULL: two ends
+    const vplShaftEnd* ends[2];  // NULL: two blocks
+    const float *lows[2], *highs[2];
     float tolerance;
     float low[3], high[3];
     ShaftPlane planes[MOST_PLANES];
     int planeCount;
-    vplBlockers* out;
+    vplBlockers* out; // NULL: the search ends at the first blocker
+    int32_t found;    // the triangle at which the search ended
 } Shaft;
 
 // Adds the plane through the same corner of both boxes, if both lie behind it.
 static void addPlane(Shaft* shaft, int u, int v, int corner)
 {
-    const vplFactorBlock *a = shaft->a, *b = shaft->b;
-    const double au = (double)(corner & 1 ? a->high : a->low)[u],
-                 av = (double)(corner & 2 ? a->high : a->low)[v];
-    const double du = (double)(corner & 1 ? b->high : b->low)[u] - au,
-                 dv = (double)(corner & 2 ? b->high : b->low)[v] - av;
+    const float *const *us = corner & 1 ? shaft->highs : shaft->lows, *const *vs = corner & 2 ? shaft->highs
+                                                                                              : shaft->lows;
+    const double au = (double)us[0][u], av = (double)vs[0][v];
+    const double du = (double)us[1][u] - au, dv = (double)vs[1][v] - av;
     const double outU = corner & 1 ? 1 : -1, outV = corner & 2 ? 1 : -1;
     if (du * outU * (dv * outV) < 0) {
         const double nu = fabs(dv) * outU, nv = fabs(du) * outV;
@@ -44,8 +47,8 @@ static void addPlane(Shaft* shaft, int u, int v, int corner)
 static void addPlanes(Shaft* shaft)
 {
     for (int k = 0; k < 3; k++) {
-        shaft->low[k] = vplMinf(shaft->a->low[k], shaft->b->low[k]);
-        shaft->high[k] = vplMaxf(shaft->a->high[k], shaft->b->high[k]);
+        shaft->low[k] = vplMinf(shaft->lows[0][k], shaft->lows[1][k]);
+        shaft->high[k] = vplMaxf(shaft->highs[0][k], shaft->highs[1][k]);
         for (int corner = 0; corner < 4; corner++) {
             addPlane(shaft, k, (k + 1) % 3, corner);
         }
@@ -104,31 +107,79 @@ static void extendRange(const vplFactorBlock* block, const float n[3], const flo
     }
 }
 
-static bool isBlocker(const Shaft* shaft, const vplTriangleBlock* block, int lane)
+// Extends `range` by the signed distances of a box's corners from a plane.
+static void extendByBox(const vplShaftEnd* end, const float n[3], const float at[3], float range[2])
 {
-    float p[3][3], range[2] = {0, 0};
-    for (int i = 0; i < 9; i++) {
-        p[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
+    float low = 0, high = 0;
+    for (int k = 0; k < 3; k++) {
+        const float a = n[k] * (end->low[k] - at[k]), b = n[k] * (end->high[k] - at[k]);
+        low += vplMinf(a, b);
+        high += vplMaxf(a, b);
     }
-    if (missesTriangle(shaft, p)) {
+    range[0] = vplMinf(range[0], low);
+    range[1] = vplMaxf(range[1], high);
+}
+
+// Tests whether a triangle is behind a flat end, or in its plane. Rays from there do not meet it.
+static bool isBehindEnd(const Shaft* shaft, const vplShaftEnd* end, const float p[3][3])
+{
+    float most = -INFINITY;
+    for (int c = 0; c < 3; c++) {
+        const vplVec3 from = vplSub(vplVec(p[c][0], p[c][1], p[c][2]), end->at);
+        most = vplMaxf(most, vplDot(end->normal, from));
+    }
+    return end->flat && most <= shaft->tolerance;
+}
+
+static bool blocks(const Shaft* shaft, const float p[3][3], int triangle)
+{
+    float range[2] = {0, 0};
+    const bool ends = shaft->a == NULL;
+    if (missesTriangle(shaft, p) ||
+        (ends && (isBehindEnd(shaft, shaft->ends[0], p) || isBehindEnd(shaft, shaft->ends[1], p)))) {
         return false;
     }
-    const vplVec3 normal = shaft->geometry->normals[block->id[lane]];
+    const vplVec3 normal = shaft->geometry->normals[triangle];
     const float n[3] = {normal.x, normal.y, normal.z};
-    extendRange(shaft->a, n, p[0], range);
-    extendRange(shaft->b, n, p[0], range);
+    if (ends) {
+        extendByBox(shaft->ends[0], n, p[0], range);
+        extendByBox(shaft->ends[1], n, p[0], range);
+    } else {
+        extendRange(shaft->a, n, p[0], range);
+        extendRange(shaft->b, n, p[0], range);
+    }
     return range[0] < -shaft->tolerance && range[1] > shaft->tolerance;
 }
 
+static bool isBlocker(const Shaft* shaft, const vplTriangleBlock* block, int lane)
+{
+    float p[3][3];
+    for (int i = 0; i < 9; i++) {
+        p[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
+    }
+    return blocks(shaft, p, block->id[lane]);
+}
+
+static bool isBlockedBy(const Shaft* shaft, int32_t triangle)
+{
+    const vplTriangleCorners t = vplGeometry_Corners(shaft->geometry, triangle);
+    float p[3][3];
+    for (int i = 0; i < 9; i++) {
+        p[i / 3][i % 3] = vplComponent(t.corner[i / 3], i % 3);
+    }
+    return blocks(shaft, p, triangle);
+}
+
 // False if there are too many blockers.
-static bool addBlockers(const Shaft* shaft, const vplTriangleBlock* block)
+static bool addBlockers(Shaft* shaft, const vplTriangleBlock* block)
 {
     vplBlockers* out = shaft->out;
     for (int lane = 0; lane < VPL_BVH_WIDTH && block->id[lane] >= 0; lane++) {
         if (!isBlocker(shaft, block, lane)) {
             continue;
         }
-        if (out->count == VPL_MOST_BLOCKERS) {
+        if (out == NULL || out->count == VPL_MOST_BLOCKERS) {
+            shaft->found = block->id[lane];
             return false;
         }
         int k = out->count++;
@@ -141,7 +192,7 @@ static bool addBlockers(const Shaft* shaft, const vplTriangleBlock* block)
 }
 
 // Searches the tree or, where it has no nodes, its few blocks. False if there are too many blockers.
-static bool search(const Shaft* shaft, const vplBvh* bvh)
+static bool search(Shaft* shaft, const vplBvh* bvh)
 {
     int32_t stack[VPL_BVH_DEPTH * (VPL_BVH_WIDTH - 1) + 1] = {0};
     int count = bvh->nodes != NULL ? 1 : bvh->blockCount;
@@ -172,7 +223,13 @@ void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFa
                       vplBlockers* out)
 {
     const vplBvh* bvh = g->rayTree;
-    Shaft shaft = {.geometry = g, .a = a, .b = b, .tolerance = tolerance, .out = out};
+    Shaft shaft = {.geometry = g,
+                   .a = a,
+                   .b = b,
+                   .lows = {a->low, b->low},
+                   .highs = {a->high, b->high},
+                   .tolerance = tolerance,
+                   .out = out};
     addPlanes(&shaft);
     out->count = 0;
     if (bvh == NULL || bvh->marks != NULL || !search(&shaft, bvh)) {
@@ -184,4 +241,22 @@ void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFa
         vplTriangleBlock_Fill(&out->blocks[out->bvh.blockCount++], g, out->ids + first,
                               vplMini(VPL_BVH_WIDTH, out->count - first));
     }
+}
+
+bool vplShaft_IsClear(const vplGeometry* g, const vplShaftEnd* a, const vplShaftEnd* b, float tolerance,
+                      int32_t* blocker)
+{
+    const vplBvh* bvh = g->rayTree;
+    Shaft shaft = {.geometry = g,
+                   .ends = {a, b},
+                   .lows = {a->low, b->low},
+                   .highs = {a->high, b->high},
+                   .tolerance = tolerance};
+    addPlanes(&shaft);
+    if (bvh == NULL || (*blocker >= 0 && isBlockedBy(&shaft, *blocker))) {
+        return false;
+    }
+    const bool clear = search(&shaft, bvh); // the tree's marks are about rays only
+    *blocker = clear ? -1 : shaft.found;
+    return clear;
 }

@@ -19,4 +19,17 @@ typedef struct vplBlockers {
 void vplBlockers_Find(const vplGeometry* geometry, const vplFactorBlock* a, const vplFactorBlock* b,
                       float tolerance, vplBlockers* blockers);
 
+// One end of a shaft: a box around sides and, where they are in one plane, that plane.
+typedef struct vplShaftEnd {
+    float low[3], high[3];
+    bool flat;
+    vplVec3 normal, at; // the plane, if flat; the sides face along `normal`
+} vplShaftEnd;
+
+// Tests that no triangle reaches between sides at either end. A triangle blocks nothing if it is behind the plane
+// of an end, or in it, or has both boxes on one side, to `tolerance` metres. May miss that the way is clear.
+// *blocker: a triangle to try first, -1: none; then the one that was found.
+bool vplShaft_IsClear(const vplGeometry* geometry, const vplShaftEnd* a, const vplShaftEnd* b,
+                      float tolerance, int32_t* blocker);
+
 #endif

@@ -23,9 +23,10 @@ typedef struct Count {
 } Count;
 
 // Every pair has at most three parts.
-static void push(Count* c, int p, int q, bool visible)
+static void push(Count* c, int p, int q, const vplLinkAnswer* answer)
 {
-    c->parts[c->partCount++] = (vplLinkPair){.p = p, .q = q, .visible = visible};
+    c->parts[c->partCount++] = (vplLinkPair){
+        .p = p, .q = q, .visible = answer->visible, .clear = answer->clear, .blocker = answer->blocker};
 }
 
 // Judges a pair of this level.
@@ -34,19 +35,19 @@ static void judge(Count* c, const vplLinkPair* pair)
     const vplLinkNode *nodes = c->work.tree->nodes, *p = &nodes[pair->p], *q = &nodes[pair->q];
     if (pair->p == pair->q) {
         for (int k = 0; k < 3 && !p->flat && p->children >= 0; k++) {
-            push(c, p->children + k % 2, p->children + (k + 1) / 2, false);
+            push(c, p->children + k % 2, p->children + (k + 1) / 2, &(vplLinkAnswer){.blocker = -1});
         }
         return;
     }
-    vplSampleNode(&c->work, pair->p, pair->p, VPL_JUDGE_POINTS, c->work.points[pair->p]);
-    vplSampleNode(&c->work, pair->q, pair->q, VPL_JUDGE_POINTS, c->work.points[pair->q]);
+    vplLinkPoints_Draw(&c->work, pair->p);
+    vplLinkPoints_Draw(&c->work, pair->q);
     const vplLinkAnswer answer = vplJudgePair(&c->work, pair);
     c->links += answer.verdict == VPL_LINK_KEEP ? c->weight : 0;
     for (int k = 0; k < 2; k++) {
         if (answer.verdict == VPL_LINK_DIVIDE_P) {
-            push(c, p->children + k, pair->q, answer.visible);
+            push(c, p->children + k, pair->q, &answer);
         } else if (answer.verdict == VPL_LINK_DIVIDE_Q) {
-            push(c, pair->p, q->children + k, answer.visible);
+            push(c, pair->p, q->children + k, &answer);
         }
     }
 }
@@ -73,7 +74,7 @@ static vplResult count(Count* c, vplArena* scratch, struct vplLinkTree* tree)
     c->work.tree = tree;
     c->work.points = vplArena_Alloc(scratch, (size_t)tree->nodeCount, sizeof *c->work.points);
     TRY(vplArena_Check(scratch));
-    c->pairs[0] = (vplLinkPair){.p = 0, .q = 0, .visible = false}; // the root and itself
+    c->pairs[0] = (vplLinkPair){.p = 0, .q = 0, .blocker = -1}; // the root and itself
     c->count = tree->nodeCount > 0;
     for (uint64_t level = 0; c->count > 0; level++) {
         c->widest = fmax(c->widest, c->weight * c->count);
@@ -89,7 +90,7 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
                                  double* scratchOut)
 {
     struct vplLinkTree tree = {.nodes = NULL};
-    Count c = {.work = {.sides = sides, .def = def}, .weight = 1};
+    Count c = {.work = {.sides = sides, .def = def, .allowed = vplAllowedLinkError(sides, def)}, .weight = 1};
     vplArena* scratch = vplArena_Create(sides->context);
     vplResult result = vplArena_Check(scratch);
     if (result == VPL_SUCCESS) {
@@ -98,8 +99,7 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
     vplArena_Destroy(scratch);
     const double count = sides->count, nodes = 2 * count, batch = fmin(c.widest, VPL_LINK_BATCH);
     const double list = 1.2 * c.links * sizeof(vplLink); // it grows by half
-    const double sorted =
-        2 * c.links * (sizeof *tree.senders + sizeof *tree.factors) + nodes * sizeof *tree.firstOf;
+    const double sorted = 2 * c.links * sizeof *tree.ends + nodes * sizeof *tree.firstOf;
     *heldOut = nodes * sizeof *tree.nodes +
                count * (sizeof *tree.order + sizeof *tree.areaUpTo + 2 * sizeof *tree.scale) + sorted;
     // While the list grows, the old one is held, too. The stack has room for all parts of a batch.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points on groups of sides, the terms between all pairs of them, and rays between them.
+// Points on groups of sides, linear fits to values at them, and rays between them.
 #include "base/rng.h"
 #include "geometry/bvh.h"
 #include "geometry/triangle.h"
@@ -7,7 +7,10 @@
 #include "radiosity/sides/side.h"
 #include "visibility/hemi_map.h"
 
-enum { STREAM = 0x4c00 }; // of random numbers; one per point
+enum { STREAM = 0x4c00, POINTS = VPL_LINK_POINTS }; // of random numbers; one per point
+
+// Fits do not follow directions in which points spread by less than this fraction of their variance.
+static const double RIDGE = 1e-4;
 
 // ---- points
 
@@ -26,78 +29,161 @@ static int findSide(const struct vplLinkTree* tree, const vplLinkNode* node, dou
     return low;
 }
 
-void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplLinkPoint* out)
+static void drawPoints(const vplLinkWork* work, int node, vplLinkPoints* out)
 {
     const struct vplLinkTree* tree = work->tree;
     const vplLinkNode* n = &tree->nodes[node];
     const double from = tree->areaUpTo[n->first], to = tree->areaUpTo[n->first + n->count];
-    const uint64_t index = (uint64_t)(uint32_t)node << 32 | (uint32_t)other;
-    for (int k = 0; k < count; k++) {
-        const vplRandom4 random = vplRandomAt(work->def->seed, STREAM + (uint32_t)k, index);
-        const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / count);
-        const int place = findSide(tree, n, target);
-        const vplPatchSide* side = &work->sides->sides[tree->order[place]];
+    const float scale = n->radius > 0 ? 1 / n->radius : 0;
+    for (int k = 0; k < POINTS; k++) {
+        const vplRandom4 random = vplRandomAt(work->def->seed, STREAM + (uint32_t)k, (uint64_t)node);
+        const double target =
+            from + (to - from) * ((k + 0.25 + 0.5 * (double)vplUnitFloat(random.v[0])) / POINTS);
+        const int position = findSide(tree, n, target);
+        const vplPatchSide* side = &work->sides->sides[tree->order[position]];
         // Beside a large sum, the summed areas of tiny sides may differ by more than the area, or not at all.
-        const double into = fmin((target - tree->areaUpTo[place]) / (double)side->area, 1);
+        const double into = fmin((target - tree->areaUpTo[position]) / (double)side->area, 1);
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
-        out[k].side = tree->order[place];
-        out[k].point = vplPatchSide_SampleCell(work->sides, side,
-                                               vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
-                                               vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
+        const vplSidePoint point = vplPatchSide_SampleCell(
+            work->sides, side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
+            vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
+        out->triangle[k] = point.triangle;
+        for (int axis = 0; axis < 3; axis++) {
+            out->at[axis][k] = vplComponent(point.at, axis);
+            out->normal[axis][k] = vplComponent(point.normal, axis);
+            out->place[axis][k] = scale * (vplComponent(point.at, axis) - vplComponent(n->middle, axis));
+        }
     }
 }
 
-// ---- pairs
+// ---- linear fits
 
-void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
-                      vplLinkTerms* out)
+// The inverse of a symmetric, positive definite matrix: its adjugate over its determinant.
+static void invert(const double m[3][3], double out[3][3])
 {
-    const vplRadiosityKernels* kernels = vplGetRadiosityKernels(work->sides->context->isa);
-    const int n = out->count;
-    for (int first = 0; first < n * n; first += VPL_SIDE_LANES) {
-        vplPointPairs pairs;
-        float terms[VPL_SIDE_LANES];
-        for (int l = 0; l < VPL_SIDE_LANES; l++) {
-            const int at = first + l < n * n ? first + l : n * n - 1, i = at / n, k = at % n;
-            vplSetLane(pairs.x, l, p[i].point.at);
-            vplSetLane(pairs.nx, l, p[i].point.normal);
-            vplSetLane(pairs.y, l, q[k].point.at);
-            vplSetLane(pairs.ny, l, q[k].point.normal);
-        }
-        kernels->pairTerms(&pairs, terms);
-        for (int l = 0; l < VPL_SIDE_LANES && first + l < n * n; l++) {
-            out->of[(first + l) / n][(first + l) % n] = terms[l];
+    for (int i = 0; i < 3; i++) {
+        const int a = (i + 1) % 3, b = (i + 2) % 3;
+        for (int k = 0; k < 3; k++) {
+            const int c = (k + 1) % 3, d = (k + 2) % 3;
+            out[k][i] = m[a][c] * m[b][d] - m[a][d] * m[b][c];
         }
     }
+    const double determinant = m[0][0] * out[0][0] + m[0][1] * out[1][0] + m[0][2] * out[2][0];
+    for (int i = 0; i < 9; i++) {
+        out[i / 3][i % 3] = determinant > 0 ? out[i / 3][i % 3] / determinant : 0;
+    }
+}
+
+// Fills weight and slope.
+static void fitPoints(vplLinkPoints* points)
+{
+    double mean[3] = {0}, spread[3][3] = {{0}}, inverse[3][3];
+    for (int i = 0; i < 3 * POINTS; i++) {
+        mean[i / POINTS] += (double)points->place[i / POINTS][i % POINTS] / POINTS;
+    }
+    for (int i = 0; i < POINTS; i++) {
+        for (int k = 0; k < 9; k++) {
+            spread[k / 3][k % 3] += ((double)points->place[k / 3][i] - mean[k / 3]) *
+                                    ((double)points->place[k % 3][i] - mean[k % 3]);
+        }
+    }
+    const double ridge = RIDGE * (spread[0][0] + spread[1][1] + spread[2][2]);
+    for (int k = 0; k < 3; k++) {
+        spread[k][k] += ridge;
+    }
+    invert(spread, inverse);
+    for (int i = 0; i < POINTS; i++) {
+        double weight = 1.0 / POINTS;
+        for (int axis = 0; axis < 3; axis++) {
+            double slope = 0;
+            for (int k = 0; k < 3; k++) {
+                slope += inverse[axis][k] * ((double)points->place[k][i] - mean[k]);
+            }
+            points->slope[axis][i] = (float)slope;
+            weight -= slope * mean[axis];
+        }
+        points->weight[i] = (float)weight;
+    }
+}
+
+void vplLinkPoints_Draw(const vplLinkWork* work, int node)
+{
+    drawPoints(work, node, &work->points[node]);
+    fitPoints(&work->points[node]);
 }
 
 // ---- rays
 
-double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
-                          const vplLinkTerms* terms, int* rays)
+static vplSidePoint pointOf(const vplLinkPoints* points, int i)
 {
+    return (vplSidePoint){vplVec(points->at[0][i], points->at[1][i], points->at[2][i]),
+                          vplVec(points->normal[0][i], points->normal[1][i], points->normal[2][i]),
+                          points->triangle[i]};
+}
+
+// The ends of a ray. Points are in the order of area, so any four consecutive rays leave from all quarters of a
+// node, and arrive at all quarters of the other.
+static int fromPoint(const vplLinkSight* sight, int ray)
+{
+    return (int)((2 * (unsigned)ray + (unsigned)ray / 4 + sight->start) % POINTS);
+}
+
+static int toPoint(const vplLinkSight* sight, int ray)
+{
+    const unsigned turn = (unsigned)(ray / POINTS);
+    return (int)((3 * (unsigned)fromPoint(sight, ray) + 4 * turn + turn / 2 + sight->start / POINTS) %
+                 POINTS);
+}
+
+// Joins sixteen pairs of points, or those up to sight->to.
+static void join(const vplLinkWork* work, const vplLinkSight* sight, int first, vplLinkSeen* seen, int* rays)
+{
+    const vplLinkPoints *p = sight->p, *q = sight->q;
     const vplPatchSides* sides = work->sides;
-    const int n = terms->count, samples = work->def->samples;
-    double open = 0, visible = 0;
-    for (int first = 0; first < samples; first += VPL_RAY_PACKET) {
-        vplRayPacket packet;
-        float amount[VPL_RAY_PACKET];
-        packet.active = 0;
-        for (int l = 0; l < VPL_RAY_PACKET; l++) {
-            const int i = (first + l) % n, k = (i + (first + l) / n) % n;
-            amount[l] = first + l < samples ? terms->of[i][k] : 0;
-            open += (double)amount[l];
-            if (amount[l] > 0) {
-                const vplVec3 way = vplWayToLight(q[k].point.at, q[k].point.normal, p[i].point.at);
-                const vplRay ray = vplPatchSides_Leave(sides, &p[i].point, way);
-                vplRayPacket_Set(&packet, l, &ray);
-            }
-        }
-        *rays += vplGeometry_Darken(sides->patches->geometry, &packet, 1, amount);
-        for (int l = 0; l < VPL_RAY_PACKET; l++) {
-            visible += (double)amount[l];
+    int from[VPL_RAY_PACKET], to[VPL_RAY_PACKET];
+    float amount[VPL_RAY_PACKET];
+    vplRayPacket packet;
+    packet.active = 0;
+    for (int l = 0; l < VPL_RAY_PACKET; l++) {
+        const int i = from[l] = fromPoint(sight, first + l), k = to[l] = toPoint(sight, first + l);
+        amount[l] = first + l < sight->to ? sight->terms->of[i][k] : 0;
+        if (amount[l] > 0) {
+            const vplSidePoint start = pointOf(p, i), end = pointOf(q, k);
+            const vplVec3 way = vplWayToLight(end.at, end.normal, start.at);
+            const vplRay ray = vplPatchSides_Leave(sides, &start, way);
+            vplRayPacket_Set(&packet, l, &ray);
+            seen->openP[i] += amount[l];
+            seen->openQ[k] += amount[l];
+            seen->open += (double)amount[l];
         }
     }
-    return open > 0 ? visible / open : 0;
+    *rays += vplGeometry_Darken(sides->patches->geometry, &packet, 1, amount);
+    for (int l = 0; l < VPL_RAY_PACKET; l++) {
+        seen->visibleP[from[l]] += amount[l];
+        seen->visibleQ[to[l]] += amount[l];
+        seen->visible += (double)amount[l];
+    }
+}
+
+void vplCastLinkRays(const vplLinkWork* work, const vplLinkSight* sight, vplLinkSeen* seen, int* rays)
+{
+    for (int first = sight->from; first < sight->to; first += VPL_RAY_PACKET) {
+        join(work, sight, first, seen, rays);
+    }
+}
+
+// Multiplies values at points by their visible fractions. A point of which no ray was cast gets that of all.
+static void darken(float values[POINTS], const float open[POINTS], const float visible[POINTS], double all)
+{
+    for (int i = 0; i < POINTS; i++) {
+        values[i] *= open[i] > 0 ? visible[i] / open[i] : (float)all;
+    }
+}
+
+void vplDarkenTerms(const vplLinkSeen* seen, vplLinkTerms* terms)
+{
+    const double all = seen->open > 0 ? seen->visible / seen->open : 0;
+    darken(terms->rows, seen->openP, seen->visibleP, all);
+    darken(terms->columns, seen->openQ, seen->visibleQ, all);
 }

@@ -33,16 +33,22 @@ static void judgeTask(void* data, int task, int worker)
         } else { // a node and itself
             const vplLinkNode* node = &r->work.tree->nodes[pair->p];
             r->answers[i] = (vplLinkAnswer){.verdict = node->flat || node->children < 0 ? VPL_LINK_NONE
-                                                                                        : VPL_LINK_DIVIDE_P};
+                                                                                        : VPL_LINK_DIVIDE_P,
+                                            .blocker = -1};
         }
     }
 }
 
 // Pushes a part of a pair that was divided. `share`: of the pair's work.
-static void push(Refinement* r, int p, int q, const vplLinkPair* pair, bool visible, float share)
+static void push(Refinement* r, int p, int q, const vplLinkPair* pair, const vplLinkAnswer* answer,
+                 float share)
 {
-    r->pairs[r->pairCount++] =
-        (vplLinkPair){.p = p, .q = q, .visible = visible, .weight = share * pair->weight};
+    r->pairs[r->pairCount++] = (vplLinkPair){.p = p,
+                                             .q = q,
+                                             .visible = answer->visible,
+                                             .clear = answer->clear,
+                                             .blocker = answer->blocker,
+                                             .weight = share * pair->weight};
 }
 
 static void divide(Refinement* r, const vplLinkPair* pair, const vplLinkAnswer* answer)
@@ -50,15 +56,15 @@ static void divide(Refinement* r, const vplLinkPair* pair, const vplLinkAnswer* 
     const vplLinkNode* nodes = r->work.tree->nodes;
     if (pair->p == pair->q) {
         const int child = nodes[pair->p].children;
-        push(r, child, child, pair, answer->visible, 0.25f);
-        push(r, child + 1, child + 1, pair, answer->visible, 0.25f);
-        push(r, child, child + 1, pair, answer->visible, 0.5f);
+        push(r, child, child, pair, answer, 0.25f);
+        push(r, child + 1, child + 1, pair, answer, 0.25f);
+        push(r, child, child + 1, pair, answer, 0.5f);
         return;
     }
     for (int k = 0; k < 2; k++) {
         const bool first = answer->verdict == VPL_LINK_DIVIDE_P;
         push(r, first ? nodes[pair->p].children + k : pair->p, first ? pair->q : nodes[pair->q].children + k,
-             pair, answer->visible, 0.5f);
+             pair, answer, 0.5f);
     }
 }
 
@@ -80,7 +86,7 @@ static vplResult finishBatch(Refinement* r, vplLinkList* list, double* done)
         }
         *done += (double)pair->weight;
         if (answer->verdict == VPL_LINK_KEEP) {
-            list->links[list->count++] = (vplLink){pair->p, pair->q, answer->mean};
+            list->links[list->count++] = (vplLink){pair->p, pair->q, answer->fit};
         }
     }
     return VPL_SUCCESS;
@@ -91,7 +97,7 @@ static void drawPointsTask(void* data, int task, int worker)
     (void)worker;
     const vplLinkWork* work = &((const Refinement*)data)->work;
     for (int node = task * TASK; node < vplMini((task + 1) * TASK, work->tree->nodeCount); node++) {
-        vplSampleNode(work, node, node, VPL_JUDGE_POINTS, work->points[node]);
+        vplLinkPoints_Draw(work, node);
     }
 }
 
@@ -106,7 +112,7 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
     TRY(vplReserve(r->context, &r->pairs, &r->pairCapacity, 1, sizeof *r->pairs));
     if (nodes > 0) {
         TRY(vplParallelForAsking(r->context, (nodes + TASK - 1) / TASK, drawPointsTask, r));
-        r->pairs[r->pairCount++] = (vplLinkPair){.p = 0, .q = 0, .visible = false, .weight = 1};
+        r->pairs[r->pairCount++] = (vplLinkPair){.p = 0, .q = 0, .blocker = -1, .weight = 1};
     }
     double done = 0;
     while (r->pairCount > 0) {
@@ -123,7 +129,9 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
 vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
                        vplLinkList* list)
 {
-    Refinement r = {.work = {.sides = sides, .tree = tree, .def = def}, .context = sides->context};
+    Refinement r = {
+        .work = {.sides = sides, .tree = tree, .def = def, .allowed = vplAllowedLinkError(sides, def)},
+        .context = sides->context};
     vplArena* scratch = vplArena_Create(sides->context);
     const vplResult result = refine(&r, scratch, list);
     vplFree(sides->context, r.pairs);

@@ -20,6 +20,10 @@ enum {
 // Leaves room for the rounding of scales and sums, so that no sum ends above 1.
 static const double MARGIN = 1 - 0x1p-21;
 
+// Sides whose form factors sum to less are not enclosed, even if rays missed the opening: links of closed rooms
+// err by less. Without, cornell-area's error is 1.1 times as large (4,000 patches).
+static const double CLOSED = 0.97;
+
 // ---- enclosed sides: their form factors sum to 1
 
 typedef struct EnclosedTest {
@@ -95,10 +99,10 @@ static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, co
     }
 }
 
-static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, const EnclosedTest* test,
-                         float* rowSums)
+static vplResult fitRows(vplLinks* links, vplArena* scratch, const EnclosedTest* test, float* rowSums)
 {
-    const int count = links->sideCount, rounds = keep ? 0 : ROUNDS;
+    const vplRowSums rows = test->def->rowSums;
+    const int count = links->sideCount, rounds = rows == VPL_ROW_SUMS_KEEP ? 0 : ROUNDS;
     vplPlanes ones = vplPlanes_Alloc(scratch, count);
     const vplLinkScratch nodes = vplLinkScratch_Alloc(scratch, links);
     double(*sums)[3] = vplArena_Alloc(scratch, (size_t)count, sizeof *sums);
@@ -111,6 +115,7 @@ static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, const En
         TRY(vplLinks_Gather(links, &ones, &nodes, sums));
         for (int i = 0; i < count && round == 0; i++) {
             rowSums[i] = (float)sums[i][0];
+            test->enclosed[i] = test->enclosed[i] && (rows != VPL_ROW_SUMS_USUAL || sums[i][0] >= CLOSED);
         }
         if (rounds > 0) {
             fitScales(links->tree, sums, count, test, round == rounds);
@@ -134,7 +139,7 @@ static vplResult findAndFit(vplLinks* links, EnclosedTest* test, vplArena* scrat
     } else if (rows == VPL_ROW_SUMS_USUAL) {
         TRY(findEnclosed(test, scratch, &links->rays));
     }
-    return fitRows(links, scratch, rows == VPL_ROW_SUMS_KEEP, test, rowSums);
+    return fitRows(links, scratch, test, rowSums);
 }
 
 vplResult vplLinks_FitRows(vplLinks* links, const vplPatchSides* sides, const vplLinkDef* def,

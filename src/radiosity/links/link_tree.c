@@ -6,6 +6,7 @@
 #include "math/vec.h"
 #include "geometry/triangle.h"
 #include "radiosity/links/links.h"
+#include "radiosity/sides/side.h"
 
 #include <float.h>
 #include <math.h>
@@ -97,16 +98,39 @@ static Corner firstCorner(const Build* b, const vplPatchSide* side)
 
 // ---- properties of a node
 
+// The centroid of a side's open cells, of a group's triangles.
+static vplVec3 middleOf(const vplPatchSide* side, bool isGroup)
+{
+    vplVec3 sum = {0, 0, 0};
+    if (isGroup) {
+        return side->incentre; // the centroid
+    }
+    if (side->open == VPL_ALL_CELLS) {
+        for (int k = 0; k < 3; k++) {
+            sum = vplAdd(sum, vplScale(1.0f / 3, side->corners[k]));
+        }
+        return sum;
+    }
+    const int count = __builtin_popcount(side->open);
+    for (int k = 0; k < count; k++) {
+        const vplVec3 at = vplPatchSide_CellCentre(side, vplPatchSide_OpenCell(side, k));
+        sum = vplAdd(sum, vplScale(1 / (float)count, at));
+    }
+    return sum;
+}
+
 // Area, brightness, bounds and mean normal.
 static void sumNode(const Build* b, vplLinkNode* node)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    double normal[3] = {0}, area = 0, emitted = 0;
+    double normal[3] = {0}, middle[3] = {0}, area = 0, emitted = 0;
     for (int i = 0; i < node->count; i++) {
         const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
         area += (double)s->area;
         emitted += (double)s->area * vplRgbMean(s->emission);
+        const vplVec3 at = middleOf(s, vplPatches_IsGroup(b->patches, s->patch));
         for (int axis = 0; axis < 3; axis++) {
+            middle[axis] += (double)s->area * (double)vplComponent(at, axis);
             normal[axis] += (double)s->area * (double)vplComponent(s->normal, axis);
         }
         for (Corner c = firstCorner(b, s); c.left > 0; nextCorner(b, s, &c)) {
@@ -123,6 +147,10 @@ static void sumNode(const Build* b, vplLinkNode* node)
     node->high = vplVec(high[0], high[1], high[2]);
     node->centre = vplVec(0.5f * low[0] + 0.5f * high[0], 0.5f * low[1] + 0.5f * high[1],
                           0.5f * low[2] + 0.5f * high[2]);
+    for (int axis = 0; axis < 3; axis++) {
+        middle[axis] /= area;
+    }
+    node->middle = vplVec((float)middle[0], (float)middle[1], (float)middle[2]);
     const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     node->normal = length > 1e-3 * area ? vplVec((float)(normal[0] / length), (float)(normal[1] / length),
                                                  (float)(normal[2] / length))

@@ -2,11 +2,13 @@
 // The hierarchy as its callers see it.
 #include "radiosity/links/links.h"
 
-enum { LINK_COOKIE = 0x56504cb4, MOST_SAMPLES = VPL_LINK_POINTS * VPL_LINK_POINTS };
+#include <math.h>
+
+enum { LINK_COOKIE = 0x56504cb4, MOST_SAMPLES = 1024 };
 
 vplLinkDef vplDefaultLinkDef(void)
 {
-    return (vplLinkDef){.error = 0.002, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
+    return (vplLinkDef){.error = 0.00015, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
 }
 
 static vplResult checkDef(const vplPatchSides* sides, const vplLinkDef* def)
@@ -35,8 +37,7 @@ static vplResult sortLinks(vplArena* arena, struct vplLinkTree* tree, const vplL
 {
     const size_t nodes = (size_t)tree->nodeCount;
     tree->firstOf = vplArena_AllocZero(arena, nodes + 2, sizeof *tree->firstOf);
-    tree->senders = vplArena_Alloc(arena, 2 * list->count, sizeof *tree->senders);
-    tree->factors = vplArena_Alloc(arena, 2 * list->count, sizeof *tree->factors);
+    tree->ends = vplArena_Alloc(arena, 2 * list->count, sizeof *tree->ends);
     TRY(vplArena_Check(arena));
     int64_t* next = tree->firstOf + 2; // shifted by two: counts become starts, starts become ends
     for (size_t i = 0; i < list->count; i++) {
@@ -51,9 +52,15 @@ static vplResult sortLinks(vplArena* arena, struct vplLinkTree* tree, const vplL
         const vplLink* link = &list->links[i];
         for (int k = 0; k < 2; k++) {
             const int32_t receiver = k ? link->q : link->p, sender = k ? link->p : link->q;
-            const int64_t at = next[receiver]++;
-            tree->senders[at] = sender;
-            tree->factors[at] = tree->nodes[sender].area * link->mean;
+            const float *here = k ? link->fit.q : link->fit.p, *there = k ? link->fit.p : link->fit.q;
+            const float area =
+                tree->nodes[sender].area / fmaxf(tree->nodes[sender].area, tree->nodes[receiver].area);
+            vplLinkEnd* end = &tree->ends[next[receiver]++];
+            *end = (vplLinkEnd){.sender = sender, .factor = area * link->fit.mean};
+            for (int axis = 0; axis < 3; axis++) {
+                end->receiverSlope[axis] = area * here[axis];
+                end->senderSlope[axis] = area * there[axis];
+            }
         }
     }
     return VPL_SUCCESS;

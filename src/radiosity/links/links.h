@@ -18,21 +18,28 @@ typedef struct vplLinkNode {
     float brightness;           // expected radiosity over the expected mean of all sides; at least 1
     vplVec3 low, high, centre;  // bounds, metres, and their centre
     float radius;               // of the sphere around `centre`
+    vplVec3 middle;             // the centroid of the open cells
     vplVec3 normal;             // unit: the mean weighted by area, or any if that is 0
     float cosSpread, sinSpread; // of the largest angle between `normal` and a triangle's normal
     float cosTurn;              // of that between `normal` and a side's, which is the mean over a group
 } vplLinkNode;
+
+// One direction of a link. The receiver's irradiance at its middle is the sum of factor times the mean of the
+// sender's radiosity, plus senderSlope times its first moment; it rises by receiverSlope times the mean per
+// radius of the receiver.
+typedef struct vplLinkEnd {
+    int32_t sender;
+    float factor, receiverSlope[3], senderSlope[3];
+} vplLinkEnd;
 
 struct vplLinkTree {
     vplLinkNode* nodes; // the root first, parents before children
     int nodeCount;
     int* order;       // sides, sorted so that those of each node are consecutive
     double* areaUpTo; // the summed area of the sides before each in `order`; one more than sides
-    // Links sorted by receiver: a node's irradiance is the sum of factor times the sender's radiosity over
-    // the links firstOf[node] .. firstOf[node + 1] - 1.
+    // Links sorted by receiver: a node receives over ends[firstOf[node]] .. ends[firstOf[node + 1] - 1].
     int64_t* firstOf;
-    int32_t* senders;
-    float* factors;
+    vplLinkEnd* ends;
     float* scale; // per side: form factors are multiplied by the scales of both their sides, see vplRowSums
 };
 
@@ -41,9 +48,15 @@ vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct 
 
 // ---- finding links (link_refine.c)
 
+// cos cos V / (pi r^2) between points of two nodes, times the larger area, as a linear function: its value at both
+// middles, which is the larger form factor, and its slopes per radius of either node.
+typedef struct vplLinkFit {
+    float mean, p[3], q[3];
+} vplLinkFit;
+
 typedef struct vplLink {
     int32_t p, q;
-    float mean; // of cos cos V / (pi r^2), 1/m^2; times the sender's area it is the form factor
+    vplLinkFit fit;
 } vplLink;
 
 typedef struct vplLinkList {
@@ -64,43 +77,44 @@ vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tre
 
 // ---- points on nodes (link_points.c)
 
-// Each node has four points by which all its pairs are judged: 16 pairs of points, one block of lanes. Drawing
-// points again for each pair took 0.35 of the whole time.
-enum { VPL_JUDGE_POINTS = 4 };
-
-typedef struct vplLinkPoint {
-    vplSidePoint point;
-    int side;
-} vplLinkPoint;
-
 // The input of refinement.
 typedef struct vplLinkWork {
     const vplPatchSides* sides;
     const struct vplLinkTree* tree;
     const vplLinkDef* def;
-    vplLinkPoint (*points)[VPL_JUDGE_POINTS]; // of each node
+    double allowed;        // error of one link
+    vplLinkPoints* points; // of each node
 } vplLinkWork;
 
-enum { VPL_LINK_POINTS = 32 }; // the most on either of two nodes
+// The error of one link that def->error means for these sides.
+double vplAllowedLinkError(const vplPatchSides* sides, const vplLinkDef* def);
 
-// `count` points on the open cells of a node, stratified by area. The random numbers are those of the pair of
-// `node` and `other`; those of a node with itself give vplLinkWork.points.
-void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplLinkPoint* pointsOut);
+// Draws a node's points on its open cells, stratified by area, and fills work->points[node].
+void vplLinkPoints_Draw(const vplLinkWork* work, int node);
 
-// The unoccluded terms cos cos / (pi r^2), 1/m^2, between point i of one node and point k of another.
-typedef struct vplLinkTerms {
-    int count; // points on either
-    float of[VPL_LINK_POINTS][VPL_LINK_POINTS];
-} vplLinkTerms;
+// Rays between the points of two nodes: each eight use every point of either node once, and any four leave and
+// arrive at points of all quarters.
+typedef struct vplLinkSight {
+    const vplLinkPoints *p, *q;
+    const vplLinkTerms* terms;
+    unsigned start; // any number; decides which points are joined
+    int from, to;   // rays, up to VPL_MOST_LINK_RAYS; `from` is a multiple of VPL_RAY_PACKET
+} vplLinkSight;
 
-// Fills termsOut->of for termsOut->count points on either node.
-void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
-                      vplLinkTerms* termsOut);
+enum { VPL_MOST_LINK_RAYS = VPL_LINK_POINTS * VPL_LINK_POINTS };
 
-// The visible fraction of the terms, by rays between def->samples pairs of points: (0, 0), (1, 1), ..., then
-// (0, 1), (1, 2), .... Adds how many rays it cast to *rays.
-double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
-                          const vplLinkTerms* terms, int* rays);
+// Sums of terms: of all rays that were cast, and of those that were not blocked, by their ends.
+typedef struct vplLinkSeen {
+    double open, visible;
+    float openP[VPL_LINK_POINTS], visibleP[VPL_LINK_POINTS];
+    float openQ[VPL_LINK_POINTS], visibleQ[VPL_LINK_POINTS];
+} vplLinkSeen;
+
+// Adds to *seen, and how many rays it cast to *rays.
+void vplCastLinkRays(const vplLinkWork* work, const vplLinkSight* sight, vplLinkSeen* seen, int* rays);
+
+// Multiplies rows and columns by the visible fractions at their points.
+void vplDarkenTerms(const vplLinkSeen* seen, vplLinkTerms* terms);
 
 // ---- one pair of nodes (link_pair.c)
 
@@ -109,7 +123,9 @@ typedef struct vplLinkPair {
     // Some ray between their parents was not blocked. If form factors vary too much over such a pair, it is
     // divided without further rays.
     bool visible;
-    float weight; // the fraction of all work, for the progress; halved by each division
+    bool clear;      // nothing is between their parents
+    int32_t blocker; // a triangle between their parents, usually between them as well; -1: none is known
+    float weight;    // the fraction of all work, for the progress; halved by each division
 } vplLinkPair;
 
 typedef enum vplLinkVerdict {
@@ -121,8 +137,9 @@ typedef enum vplLinkVerdict {
 
 typedef struct vplLinkAnswer {
     vplLinkVerdict verdict;
-    bool visible;
-    float mean; // of vplLink, if kept
+    bool visible, clear;
+    int32_t blocker;
+    vplLinkFit fit; // if kept
     int rays;
 } vplLinkAnswer;
 
@@ -133,8 +150,11 @@ vplLinkAnswer vplJudgePair(const vplLinkWork* work, const vplLinkPair* pair);
 
 // Values of nodes that vplLinks_Gather computes.
 typedef struct vplLinkScratch {
-    double (*received)[3];
-    float (*sent)[4]; // the last is 0, so that four floats are loaded at once
+    // At the middle, and the rise per radius along each axis. [0, x, y, z][channel]
+    double (*received)[4][3];
+    // The mean over the area, and the means of radiosity times the place, from the middle in radii, along each
+    // axis. The last channel is 0, so that four floats are loaded at once. [0, x, y, z][channel]
+    float (*sent)[4][4];
 } vplLinkScratch;
 
 // NULL arrays when out of memory; vplArena_Check reports it.
