@@ -138,6 +138,7 @@ typedef struct vplGeometry {
     const struct vplPaint* paint; // textures and colours of vertices; NULL: surfaces have one colour each
     vplEnvironment* environment;  // light from outside; NULL: there is none
     struct vplBvh* rayTree;       // accelerates rays; NULL: there is none
+    uint64_t scene;               // identifies the scene that it was made of
     struct vplArena* arena;       // owns the arrays
     vplContext* context;
 } vplGeometry;
@@ -154,6 +155,13 @@ vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geome
 // Builds the ray tree, with all workers; does nothing if there is one. Not to be called from a task or while
 // rays are being cast. On VPL_OUT_OF_MEMORY the geometry stays as it was.
 vplResult vplGeometry_BuildRayTree(vplGeometry* geometry);
+
+// Makes the geometry that of the scene as it is now, after vplScene_SetTransform, SetMaterial and SetObjectMaterial: objects
+// that were moved are transformed anew, and if one was, the ray tree is built anew, if there is one. The result has the
+// bits of a new geometry. vplGeometry_CanUpdate is false, and the geometry must be made anew, where things were added, and
+// where textures, colours of vertices or an environment are part of it. After a failure it can only be destroyed.
+bool vplGeometry_CanUpdate(const vplGeometry* geometry, const vplScene* scene);
+vplResult vplGeometry_Update(vplGeometry* geometry, const vplScene* scene);
 
 // NULL is allowed.
 void vplGeometry_Destroy(vplGeometry* geometry);

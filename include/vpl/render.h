@@ -9,8 +9,8 @@ VPL_HEADER_BEGIN
 
 // Results of stages that frames of a sequence share: the geometry, and for SSVP and radiosity reflective
 // maps, lights, clusters, patches and form factors. A result is reused as long as nothing that it depends on
-// has changed. Frames are rendered one after another, in any order, with one scene, to which nothing may be
-// added; options may change. Pictures have the same bits as without a history, except where
+// has changed. Frames are rendered one after another, in any order, with one scene, which may change between
+// them (vplScene_SetTransform and its like); options may change. Pictures have the same bits as without a history, except where
 // sequence.coherence says otherwise. A history must outlive the renderers that use it.
 vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut);
 

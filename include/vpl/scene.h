@@ -234,6 +234,17 @@ vplResult vplScene_SetEnvironment(vplScene* scene, const vplEnvironmentDef* def)
 // values of the file count as 0, with a warning. Errors also as vplImage_Read.
 vplResult vplScene_LoadEnvironment(vplScene* scene, const char* path, const vplEnvironmentDef* def);
 
+// Changes what was added, for programs that edit a scene and render it again with the same vplHistory: of its geometry
+// only what changed is made anew, and nothing where only cameras and emitters changed. Pictures have the bits of a scene
+// that was declared so. A camera or emitter that had a path stands still afterwards. A renderer ends with the scene that
+// it was created for: after a change its steps are VPL_INVALID_ARGUMENT. The index must be in range, and defs are checked
+// as by the functions above; a failure changes nothing.
+vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def);
+vplResult vplScene_SetMaterial(vplScene* scene, int index, const vplMaterialDef* def);
+vplResult vplScene_SetEmitter(vplScene* scene, int index, const vplEmitterDef* def);
+vplResult vplScene_SetTransform(vplScene* scene, int object, const vplMat4* transform);
+vplResult vplScene_SetObjectMaterial(vplScene* scene, int object, int material);
+
 // Makes a camera or an emitter move along keyframes: linear interpolation between two keys, constant before
 // the first and after the last. Frames must increase, and the values at each key must be valid for a def.
 // Replaces the path that was set before; with 0 keys it stands still, as declared. VPL_INVALID_ARGUMENT,

@@ -9,6 +9,7 @@
 #include "math/vec.h"
 
 #include <math.h>
+#include <string.h>
 
 static bool isSmooth(const vplScene* scene, const vplObjectDef* def)
 {
@@ -51,6 +52,26 @@ static vplResult allocate(const vplScene* scene, vplGeometry* g, vplGeometryBuil
     return vplArena_Check(g->arena);
 }
 
+static void fillMaterials(const vplGeometry* g, const vplGeometryBuilder* b)
+{
+    for (int i = 0; i < g->materialCount; i++) {
+        b->materials[i] = b->scene->materials[i];
+        b->materials[i].name = NULL; // the scene may be destroyed before the geometry
+    }
+}
+
+// Fills vertices and triangles of an object, whose placement and counts are known.
+static void finishObject(vplGeometry* g, const vplGeometryBuilder* b, int index)
+{
+    vplGeometryObject* object = &b->objects[index];
+    const vplMeshDef shape = vplShapeOf(b->scene, &b->scene->objects[index]);
+    vplBuildObject(b, index);
+    object->byFormula = vplNeedsFormula(object, &shape, b->positions);
+    if (object->byFormula) {
+        b->formulaObjects[g->formulaCount++] = index;
+    }
+}
+
 static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
 {
     const vplScene* scene = b->scene;
@@ -67,18 +88,11 @@ static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
                                       .firstTriangle = triangle,
                                       .triangleCount = shape.triangleCount};
         TRY(vplPlacement_Create(g->context, &def->transform, &object->placement));
-        vplBuildObject(b, i);
-        object->byFormula = vplNeedsFormula(object, &shape, b->positions);
-        if (object->byFormula) {
-            b->formulaObjects[g->formulaCount++] = i;
-        }
+        finishObject(g, b, i);
         vertex += object->vertexCount;
         triangle += object->triangleCount;
     }
-    for (int i = 0; i < g->materialCount; i++) {
-        b->materials[i] = scene->materials[i];
-        b->materials[i].name = NULL; // the scene may be destroyed before the geometry
-    }
+    fillMaterials(g, b);
     return VPL_SUCCESS;
 }
 
@@ -91,6 +105,8 @@ static void summarise(vplGeometry* g)
         g->boundsMax = vplVec(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
     }
     double reflecting = 0;
+    g->area = 0;
+    g->emits = false;
     for (int i = 0; i < g->triangleCount; i++) {
         const vplMaterialDef* material = &g->materials[g->triangleMaterials[i]];
         const vplRgb rho = vplGeometry_ReflectanceOf(g, i);
@@ -118,6 +134,7 @@ static void warnOfDistance(const vplGeometry* g)
 static vplResult build(const vplScene* scene, vplGeometry* g)
 {
     vplGeometryBuilder builder = {.scene = scene};
+    g->scene = scene->identity;
     vplScene_GetOrigin(scene, g->origin);
     TRY(allocate(scene, g, &builder));
     TRY(fill(g, &builder));
@@ -142,6 +159,59 @@ vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geome
         }
     }
     return vplArena_Deliver(arena, result, g, geometryOut);
+}
+
+// ---- updates
+
+// The arrays of a finished geometry, which belong to it and are filled again.
+static vplGeometryBuilder reopen(const vplGeometry* g, const vplScene* scene)
+{
+    return (vplGeometryBuilder){.scene = scene,
+                                .objects = (vplGeometryObject*)g->objects,
+                                .positions = (vplVec3*)g->positions,
+                                .shadingNormals = (vplVec3*)g->shadingNormals,
+                                .indices = (uint32_t*)g->indices,
+                                .normals = (vplVec3*)g->normals,
+                                .owners = (int*)g->owners,
+                                .triangleMaterials = (int*)g->triangleMaterials,
+                                .formulaObjects = (int*)g->formulaObjects,
+                                .materials = (vplMaterialDef*)g->materials};
+}
+
+bool vplGeometry_CanUpdate(const vplGeometry* g, const vplScene* scene)
+{
+    bool same = g->scene == scene->identity && g->objectCount == scene->objectCount &&
+                g->materialCount == scene->materialCount && g->paint == NULL && scene->textureCount == 0 &&
+                g->environment == NULL && scene->environment.type == VPL_ENVIRONMENT_NONE;
+    for (int i = 0; i < scene->meshCount && same; i++) {
+        same = scene->meshes[i].colors == NULL;
+    }
+    return same && memcmp(g->origin, scene->origin, sizeof g->origin) == 0;
+}
+
+vplResult vplGeometry_Update(vplGeometry* g, const vplScene* scene)
+{
+    const vplGeometryBuilder b = reopen(g, scene);
+    bool moved = false;
+    g->formulaCount = 0;
+    fillMaterials(g, &b);
+    for (int i = 0; i < g->objectCount; i++) {
+        const vplObjectDef* def = &scene->objects[i];
+        const vplPlacement before = b.objects[i].placement;
+        TRY(vplPlacement_Create(g->context, &def->transform, &b.objects[i].placement));
+        moved = moved || memcmp(&before, &b.objects[i].placement, sizeof before) != 0;
+        b.objects[i].material = def->material;
+        b.objects[i].coplanar = false;
+        finishObject(g, &b, i);
+    }
+    summarise(g);
+    TRY(vplMarkCoplanar(g, b.objects));
+    if (moved && g->rayTree != NULL) {
+        vplBvh_Destroy(g->rayTree);
+        g->rayTree = NULL;
+        return vplGeometry_BuildRayTree(g);
+    }
+    return VPL_SUCCESS;
 }
 
 vplResult vplGeometry_BuildRayTree(vplGeometry* geometry)

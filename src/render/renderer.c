@@ -7,6 +7,7 @@
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
+#include "scene/scene.h"
 
 #include <math.h>
 
@@ -119,6 +120,7 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
         return VPL_OUT_OF_MEMORY;
     }
     r->asked = *options;
+    r->stamp = scene->stamp;
     if (options->view != NULL) {
         r->view = *options->view;
         r->asked.view = &r->view;
@@ -289,6 +291,10 @@ static vplResult review(vplRenderer* r, bool* doneOut)
 vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
 {
     const double begin = vplClockMs();
+    if (r->stamp != r->runner.run.scene->stamp) {
+        return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
+                       "vplRenderer_Step: the scene was changed since the renderer was created");
+    }
     r->runner.stepFrom = shareOf(r, r->done);
     r->runner.stepTo = shareOf(r, r->done + !r->unreviewed);
     if (r->unreviewed) {

@@ -29,6 +29,7 @@ typedef struct vplErrorParts {
 struct vplRenderer {
     vplRunner runner;
     vplRenderOptions asked; // by the caller
+    uint64_t stamp;         // of the scene when the render began
     vplCameraDef view;      // a copy of the caller's, to which asked.view points
     vplPlan* plan;          // under way
     bool coarse;            // its picture only serves until a better plan has one

@@ -50,16 +50,15 @@ vplResult vplHistory_Open(const vplScene* scene, vplHistory* shared, vplHistory*
         return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                        "vplRenderOptions.sequence.history was made with another context than the scene's");
     }
-    if (shared != NULL && shared->sceneStamp != 0 && shared->sceneStamp != scene->stamp) {
+    if (shared != NULL && shared->scene != 0 && shared->scene != scene->identity) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplRenderOptions.sequence.history is of another scene, or something was added to the "
-                       "scene since");
+                       "vplRenderOptions.sequence.history is of another scene");
     }
     if (shared == NULL || shared->busy) {
         return vplHistory_Create(scene->context, historyOut);
     }
     shared->busy = true;
-    shared->sceneStamp = scene->stamp;
+    shared->scene = scene->identity;
     *historyOut = shared;
     return VPL_SUCCESS;
 }
@@ -214,7 +213,7 @@ static uint64_t hashValue(const vplRun* run, const char* word, uint32_t build, u
                       : state;
     }
     if (strcmp(word, "SCENE") == 0) {
-        return hashNumber(hashNumber(state, (double)run->scene->stamp), plan->castsRays);
+        return hashNumber(hashNumber(state, (double)run->scene->surfaces), plan->castsRays);
     }
     if (strcmp(word, "seed") == 0) { // 64 bits, which a double does not hold
         return hashBytes(state, &o->seed, sizeof o->seed);
@@ -249,15 +248,18 @@ static bool isFresh(const vplRunner* r, vplStageId id, uint64_t key)
 }
 
 // Before a result is made anew, frees the results that were made from the old one. Results that later stages
-// continue from stay.
+// continue from stay, but not where surfaces change: they refer to them.
 static void emptyFrom(vplHistory* history, vplStageId id)
 {
+    for (int i = VPL_STAGE_COUNT; i-- > 1 && id == VPL_STAGE_GEOMETRY;) {
+        empty(history, i);
+    }
     uint32_t stale = 1u << id;
     for (int i = (int)id + 1; i < VPL_STAGE_COUNT; i++) {
         stale |= (VPL_STAGES[i].inputs & stale) != 0 ? 1u << i : 0u;
     }
     for (int i = VPL_STAGE_COUNT; i-- > (int)id;) {
-        if ((stale & 1u << i) != 0 && !VPL_STAGES[i].continues) {
+        if ((stale & 1u << i) != 0 && !VPL_STAGES[i].continues && !VPL_STAGES[i].updates) {
             empty(history, i);
         }
     }

@@ -19,8 +19,8 @@ typedef struct vplSlot {
 // The results of all stages, kept between passes, and between frames that share a history.
 struct vplHistory {
     vplContext* context;
-    uint64_t sceneStamp; // identifies the scene of the first frame; 0: no frame yet
-    bool busy;           // a renderer uses it, which does not own it
+    uint64_t scene; // identifies that of the first frame; 0: no frame yet
+    bool busy;      // a renderer uses it, which does not own it
     vplSlot slots[VPL_STAGE_COUNT];
 };
 

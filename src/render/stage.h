@@ -79,7 +79,8 @@ typedef struct vplStage {
     void (*destroy)(void* result);     // frees objects that its arena does not own; NULL: there are none
     void (*report)(const vplRun* run); // adds the result, kept or new, to the statistics; may be NULL
     bool continues;                    // it starts from its last result
-    bool undoes;                       // if cancelled, it leaves its last result whole
+    bool updates; // likewise, but the new result has the bits of one that is made without it
+    bool undoes;  // if cancelled, it leaves its last result whole
 } vplStage;
 
 // One row per vplStageId.

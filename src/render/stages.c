@@ -235,7 +235,7 @@ static bool needsPaths(const vplPlan* p, char* why)
 const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
     [VPL_STAGE_GEOMETRY] = {
         "geometry", 0.02, 0, "SCENE",
-        needsGeometry, vplMakeGeometry, vplDestroyGeometry, .report = vplReportGeometry},
+        needsGeometry, vplMakeGeometry, vplDestroyGeometry, .report = vplReportGeometry, .updates = true},
     [VPL_STAGE_NEAR_DISTANCE] = {
         "clamp distance", 0.03, IN(GEOMETRY), "VIEW",
         needsNearDistance, vplMakeNearDistance, NULL, .report = NULL},

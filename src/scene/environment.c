@@ -113,7 +113,7 @@ vplResult vplScene_SetEnvironment(vplScene* scene, const vplEnvironmentDef* def)
     vplArena_Free(scene->arena, scene->environmentPixels);
     scene->environmentPixels = pixels;
     scene->environment = copy;
-    scene->stamp = vplNextStamp(scene->context);
+    vplScene_Touch(scene, true);
     return VPL_SUCCESS;
 }
 

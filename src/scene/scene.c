@@ -65,7 +65,8 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
     if (result == VPL_SUCCESS) {
         scene->context = context;
         scene->arena = arena;
-        scene->stamp = vplNextStamp(context);
+        scene->identity = vplNextStamp(context);
+        vplScene_Touch(scene, true);
         scene->environment = vplDefaultEnvironmentDef();
     }
     return vplArena_Deliver(arena, result, scene, sceneOut);
@@ -93,6 +94,12 @@ void vplScene_DropTextures(vplScene* scene, int count)
     while (scene->textureCount > count) {
         vplTexture_Release(scene->textures[--scene->textureCount].decoded);
     }
+}
+
+void vplScene_Touch(vplScene* scene, bool surfaces)
+{
+    scene->stamp = vplNextStamp(scene->context);
+    scene->surfaces = surfaces ? scene->stamp : scene->surfaces;
 }
 
 vplResult vplScene_Deliver(vplScene* scene, vplResult result, vplScene** sceneOut)
@@ -147,7 +154,7 @@ static vplResult append(vplScene* scene, List list, const void* element, int* in
         *indexOut = *list.count;
     }
     ++*list.count;
-    scene->stamp = vplNextStamp(scene->context);
+    vplScene_Touch(scene, list.count != &scene->cameraCount && list.count != &scene->emitterCount);
     return VPL_SUCCESS;
 }
 
@@ -171,7 +178,7 @@ vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3])
         }
     }
     memcpy(scene->origin, origin, sizeof scene->origin);
-    scene->stamp = vplNextStamp(scene->context);
+    vplScene_Touch(scene, true);
     return VPL_SUCCESS;
 }
 
@@ -209,16 +216,24 @@ vplResult vplScene_AddTexture(vplScene* scene, const vplTextureDef* def, int* in
     return result;
 }
 
-vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut)
+// Checks a material that is to be number `index`.
+static vplResult checkMaterial(const vplScene* scene, const vplMaterialDef* def, int index)
 {
     TRY(requireCookie(scene, "vplMaterialDef", def->cookie == MATERIAL_COOKIE));
     TRY(vplScene_ReportFault(scene, "vplMaterialDef.", vplCheckMaterial(def, scene->textureCount)));
     for (int i = 0; def->name != NULL && i < scene->materialCount; i++) {
-        if (scene->materials[i].name != NULL && strcmp(scene->materials[i].name, def->name) == 0) {
+        const char* taken = scene->materials[i].name;
+        if (i != index && taken != NULL && strcmp(taken, def->name) == 0) {
             return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                            "vplMaterialDef.name \"%s\" is taken, must be unique", def->name);
         }
     }
+    return VPL_SUCCESS;
+}
+
+vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut)
+{
+    TRY(checkMaterial(scene, def, scene->materialCount));
     vplMaterialDef copy = *def;
     TRY(copyName(scene, &copy.name));
     return vplScene_AdoptMaterial(scene, &copy, indexOut);
@@ -263,6 +278,16 @@ vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut
     return vplScene_AdoptMesh(scene, &copy, arena, indexOut);
 }
 
+vplResult vplScene_CheckObjectMaterial(const vplScene* scene, vplObjectType type, int mesh, int material)
+{
+    const bool own = type == VPL_OBJECT_MESH && material == -1 && scene->meshes[mesh].materials != NULL;
+    return own || (material >= 0 && material < scene->materialCount)
+               ? VPL_SUCCESS
+               : vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                         "vplObjectDef.material is %d, must be one of the scene's %d materials", material,
+                         scene->materialCount);
+}
+
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut)
 {
     TRY(requireCookie(scene, "vplObjectDef", def->cookie == OBJECT_COOKIE));
@@ -277,12 +302,7 @@ vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* inde
                        "vplObjectDef.mesh is %d, must be one of the scene's %d meshes", def->mesh,
                        scene->meshCount);
     }
-    bool ownMaterials = mesh && def->material == -1 && scene->meshes[def->mesh].materials != NULL;
-    if (!ownMaterials && (def->material < 0 || def->material >= scene->materialCount)) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplObjectDef.material is %d, must be one of the scene's %d materials", def->material,
-                       scene->materialCount);
-    }
+    TRY(vplScene_CheckObjectMaterial(scene, def->type, def->mesh, def->material));
     vplObjectDef copy = *def;
     TRY(copyName(scene, &copy.name));
     return append(scene, LIST(scene, object, objects), &copy, indexOut);
@@ -294,6 +314,72 @@ vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* in
     TRY(requireCookie(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE));
     TRY(vplScene_ReportFault(scene, "vplEmitterDef.", vplCheckEmitter(def)));
     return append(scene, LIST(scene, emitter, emitters), &emitter, indexOut);
+}
+
+// ---- changes
+
+static vplResult checkIndex(const vplScene* scene, const char* what, int index, int count)
+{
+    return index >= 0 && index < count
+               ? VPL_SUCCESS
+               : vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s %d does not exist, the scene has %d", what,
+                         index, count);
+}
+
+vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def)
+{
+    TRY(checkIndex(scene, "camera", index, scene->cameraCount));
+    TRY(vplScene_CheckCamera(scene, "vplCameraDef.", def));
+    TRY(vplScene_SetCameraPath(scene, index, NULL, 0));
+    scene->cameras[index].def = *def;
+    vplScene_Touch(scene, false);
+    return VPL_SUCCESS;
+}
+
+vplResult vplScene_SetEmitter(vplScene* scene, int index, const vplEmitterDef* def)
+{
+    TRY(checkIndex(scene, "emitter", index, scene->emitterCount));
+    TRY(requireCookie(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE));
+    TRY(vplScene_ReportFault(scene, "vplEmitterDef.", vplCheckEmitter(def)));
+    TRY(vplScene_SetEmitterPath(scene, index, NULL, 0));
+    scene->emitters[index].def = *def;
+    vplScene_Touch(scene, false);
+    return VPL_SUCCESS;
+}
+
+vplResult vplScene_SetMaterial(vplScene* scene, int index, const vplMaterialDef* def)
+{
+    TRY(checkIndex(scene, "material", index, scene->materialCount));
+    TRY(checkMaterial(scene, def, index));
+    vplMaterialDef copy = *def;
+    const char* before = scene->materials[index].name;
+    if (before != NULL && copy.name != NULL && strcmp(before, copy.name) == 0) {
+        copy.name = before; // names stay in the scene's memory
+    } else {
+        TRY(copyName(scene, &copy.name));
+    }
+    scene->materials[index] = copy;
+    vplScene_Touch(scene, true);
+    return VPL_SUCCESS;
+}
+
+vplResult vplScene_SetTransform(vplScene* scene, int object, const vplMat4* transform)
+{
+    TRY(checkIndex(scene, "object", object, scene->objectCount));
+    TRY(vplScene_ReportFault(scene, "vplScene_SetTransform: ", vplCheckTransform(transform)));
+    scene->objects[object].transform = *transform;
+    vplScene_Touch(scene, true);
+    return VPL_SUCCESS;
+}
+
+vplResult vplScene_SetObjectMaterial(vplScene* scene, int object, int material)
+{
+    TRY(checkIndex(scene, "object", object, scene->objectCount));
+    TRY(vplScene_CheckObjectMaterial(scene, scene->objects[object].type, scene->objects[object].mesh,
+                                     material));
+    scene->objects[object].material = material;
+    vplScene_Touch(scene, true);
+    return VPL_SUCCESS;
 }
 
 // Defines vplScene_GetThingCount and vplScene_GetThing.

@@ -31,8 +31,10 @@ typedef struct vplSceneTexture {
 
 struct vplScene {
     vplContext* context;
-    vplArena* arena; // owns the scene and everything in it
-    uint64_t stamp;  // changes with each addition
+    vplArena* arena;   // owns the scene and everything in it
+    uint64_t identity; // differs from that of every other scene of the context
+    uint64_t stamp;    // changes with everything
+    uint64_t surfaces; // changes with all that geometry is made of
     double origin[3];
     vplCamera* cameras;
     vplSceneTexture* textures;
@@ -46,6 +48,12 @@ struct vplScene {
     int cameraCount, textureCount, materialCount, meshCount, objectCount, emitterCount;
     size_t cameraCapacity, textureCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
 };
+
+// Notes a change; of surfaces: of anything but cameras and emitters.
+void vplScene_Touch(vplScene* scene, bool surfaces);
+
+// Fails unless an object of this type and mesh may have the material.
+vplResult vplScene_CheckObjectMaterial(const vplScene* scene, vplObjectType type, int mesh, int material);
 
 // Adds a mesh without checking it. Its arrays are in `arena`, which becomes part of the scene's; on failure
 // it is destroyed. Fails, too, if an allocation of `arena` failed.

@@ -5,7 +5,12 @@
 
 vplResult vplMakeGeometry(const vplRun* run, void** resultOut)
 {
-    vplGeometry* geometry;
+    vplGeometry* geometry = run->before;
+    if (geometry != NULL && vplGeometry_CanUpdate(geometry, run->scene)) {
+        *resultOut = geometry;
+        TRY(vplGeometry_Update(geometry, run->scene));
+        return run->plan->castsRays ? vplGeometry_BuildRayTree(geometry) : VPL_SUCCESS;
+    }
     TRY(run->plan->castsRays ? vplGeometry_Create(run->scene, &geometry)
                              : vplGeometry_CreateForRaster(run->scene, &geometry));
     *resultOut = geometry;
