@@ -44,9 +44,9 @@ vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* 
 // Adds a material without checking it or copying its name.
 vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut);
 
-// Reads an OBJ file as a whole scene, with a camera, a ground and a light of our own.
-vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
-                                vplScene** sceneOut);
+// Reads a model file as a whole scene, with a camera, a ground and a light of our own.
+vplResult vplScene_LoadModelAlone(vplContext* context, const char* path, const vplModelSceneDef* def,
+                                  vplScene** sceneOut);
 
 // VPL_MAX_MAGNITUDE for fields in double. The float nearest to 1e15 is 1.3e7 below it, so a comparison with that float
 // refuses 1e15 itself.

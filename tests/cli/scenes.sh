@@ -55,7 +55,7 @@ equals InfoCountsTrianglesOfMeshes 11 "$(tr -d ' \n' <"$scratch/stdout" | sed -n
 succeeds ASceneOfMeshesIsRendered "$vpl" render tests/data/obj/meshes.json -o "$out/meshes.pfm" --size 32x24 --method direct
 "$vpl" render tests/data/obj/square.obj -o "$out/square.pfm" --size 32x24 --method direct 2>"$scratch/said"
 equals ObjAloneIsRendered 0 $?
-check ObjAloneSaysItsCamera grep -q 'square.obj: an OBJ file has no camera; it looks from' "$scratch/said"
+check ObjAloneSaysItsCamera grep -q 'square.obj: the file has no camera; one looks from' "$scratch/said"
 check ObjAloneSaysItsLight grep -q 'square.obj: nothing emits light; a square key lamp of' "$scratch/said"
 check ObjAloneSaysItsGround grep -q 'square.obj: it stands on a grey ground of' "$scratch/said"
 equals ObjAloneSaysNoMore 4 "$(wc -l <"$scratch/said")"

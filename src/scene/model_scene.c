@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads an OBJ file as a whole scene. It has no camera, no ground and seldom a light: we add them and log
-// each.
+// Reads a model file as a whole scene. Most have no camera, no ground and no light: we add them and log each.
 //
 // The camera looks down along VIEW, a three-quarter view, with a vertical field of view of FIELD. It stands
 // as near as it can with all vertices inside the picture and MARGIN of the picture's shorter side free at
@@ -15,7 +14,7 @@
 #include "base/file.h"
 #include "math/double3.h"
 #include "math/scalar.h"
-#include "scene/scene.h"
+#include "scene/model.h"
 
 static const double VIEW[3] = {-0.42, -0.38, -0.9}; // of any length
 static const double FIELD = 26 * VPL_PI / 180;
@@ -32,11 +31,11 @@ typedef struct Lamp {
 static const Lamp LAMPS[2] = {{"key lamp", {-0.40, 0.75, 0.60}, 1},
                               {"fill lamp", {0.60, 0.80, 0.30}, 0.08}}; // or shadows would be black
 
-enum { OBJ_SCENE_COOKIE = 0x56504f53 };
+enum { MODEL_SCENE_COOKIE = 0x56504f53 };
 
-vplObjSceneDef vplDefaultObjSceneDef(void)
+vplModelSceneDef vplDefaultModelSceneDef(void)
 {
-    return (vplObjSceneDef){16.0 / 9, true, true, OBJ_SCENE_COOKIE};
+    return (vplModelSceneDef){16.0 / 9, true, true, MODEL_SCENE_COOKIE};
 }
 
 // Half a field of view: its slopes at the edges of the picture, and without the margin.
@@ -47,10 +46,11 @@ typedef struct Field {
 // The view of the mesh. Right is horizontal; right, up and ahead are unit vectors at right angles.
 typedef struct Look {
     double centre[3], radius; // of the bounds of the vertices
-    double lowest;            // y of the lowest vertex
+    double low[3], high[3];   // the bounds
+    double most[2][2];        // what the edges of the picture bound (see fit)
     double right[3], up[3], ahead[3];
-    double eye[3];        // along right, up and ahead from the centre
-    double nearest, most; // least and greatest depth of a vertex from the centre
+    double eye[3];            // along right, up and ahead from the centre
+    double nearest, farthest; // least and greatest depth of a vertex from the centre
 } Look;
 
 static void normalize3(const double a[3], double out[3])
@@ -80,23 +80,47 @@ static double larger(double a, double b)
     return a > b ? a : b;
 }
 
-static void measure(Look* l, const vplMeshDef* mesh)
+// Called for all vertices of all objects.
+typedef void VertexFcn(Look* l, const double inner[2], const double p[3]);
+
+static void forVertices(const vplScene* scene, Look* l, const double inner[2], VertexFcn* call)
 {
-    vplVec3 low = mesh->positions[0], high = low;
-    for (int i = 1; i < mesh->vertexCount; i++) {
-        vplVec3 p = mesh->positions[i];
-        low = vplVec(vplMinf(low.x, p.x), vplMinf(low.y, p.y), vplMinf(low.z, p.z));
-        high = vplVec(vplMaxf(high.x, p.x), vplMaxf(high.y, p.y), vplMaxf(high.z, p.z));
+    for (int o = 0; o < scene->objectCount; o++) {
+        const vplMeshDef* mesh = &scene->meshes[scene->objects[o].mesh];
+        const vplAffine world = vplAffine_FromMat4(&scene->objects[o].transform);
+        for (int i = 0; i < mesh->vertexCount; i++) {
+            double at[3], p[3];
+            vplToDouble3(mesh->positions[i], at);
+            for (int k = 0; k < 3; k++) {
+                p[k] = world.m[k][3] + vplDot3(world.m[k], at);
+            }
+            call(l, inner, p);
+        }
     }
-    double a[3], b[3], half[3];
-    vplToDouble3(low, a);
-    vplToDouble3(high, b);
+}
+
+static void addToBounds(Look* l, const double inner[2], const double p[3])
+{
+    (void)inner;
     for (int k = 0; k < 3; k++) {
-        l->centre[k] = 0.5 * (a[k] + b[k]);
-        half[k] = 0.5 * (b[k] - a[k]);
+        l->low[k] = smaller(l->low[k], p[k]);
+        l->high[k] = larger(l->high[k], p[k]);
+    }
+}
+
+static void measure(Look* l, const vplScene* scene)
+{
+    double half[3];
+    for (int k = 0; k < 3; k++) {
+        l->low[k] = INFINITY;
+        l->high[k] = -INFINITY;
+    }
+    forVertices(scene, l, NULL, addToBounds);
+    for (int k = 0; k < 3; k++) {
+        l->centre[k] = 0.5 * (l->low[k] + l->high[k]);
+        half[k] = 0.5 * (l->high[k] - l->low[k]);
     }
     l->radius = sqrt(vplDot3(half, half));
-    l->lowest = a[1];
 }
 
 static Field fieldOf(double aspect)
@@ -112,40 +136,44 @@ static Field fieldOf(double aspect)
 // x - s z of all vertices and B the greatest -x - s z. Then A <= a - s e and B <= -a - s e: their sum bounds
 // e, and a = (A - B) / 2 serves every such e. The same holds upwards. The nearest eye has the greatest e
 // within both bounds. A third bound keeps the eye away from a needle that points at it.
-static void fit(Look* l, const vplMeshDef* mesh, const double inner[2])
+static void addToFit(Look* l, const double inner[2], const double p[3])
 {
-    double most[2][2] = {{-INFINITY, -INFINITY}, {-INFINITY, -INFINITY}};
-    l->nearest = INFINITY;
-    l->most = -INFINITY;
-    for (int i = 0; i < mesh->vertexCount; i++) {
-        double p[3];
-        vplToDouble3(mesh->positions[i], p);
-        for (int k = 0; k < 3; k++) {
-            p[k] -= l->centre[k];
-        }
-        const double depth = vplDot3(p, l->ahead), across[2] = {vplDot3(p, l->right), vplDot3(p, l->up)};
-        for (int k = 0; k < 2; k++) {
-            most[k][0] = larger(most[k][0], across[k] - inner[k] * depth);
-            most[k][1] = larger(most[k][1], -across[k] - inner[k] * depth);
-        }
-        l->nearest = smaller(l->nearest, depth);
-        l->most = larger(l->most, depth);
+    double from[3];
+    for (int k = 0; k < 3; k++) {
+        from[k] = p[k] - l->centre[k];
     }
+    const double depth = vplDot3(from, l->ahead), across[2] = {vplDot3(from, l->right), vplDot3(from, l->up)};
+    for (int k = 0; k < 2; k++) {
+        l->most[k][0] = larger(l->most[k][0], across[k] - inner[k] * depth);
+        l->most[k][1] = larger(l->most[k][1], -across[k] - inner[k] * depth);
+    }
+    l->nearest = smaller(l->nearest, depth);
+    l->farthest = larger(l->farthest, depth);
+}
+
+static void fit(Look* l, const vplScene* scene, const double inner[2])
+{
+    for (int k = 0; k < 4; k++) {
+        l->most[k / 2][k % 2] = -INFINITY;
+    }
+    l->nearest = INFINITY;
+    l->farthest = -INFINITY;
+    forVertices(scene, l, inner, addToFit);
     l->eye[2] = l->nearest - 0.125 * l->radius;
     for (int k = 0; k < 2; k++) {
-        l->eye[k] = 0.5 * (most[k][0] - most[k][1]);
-        l->eye[2] = smaller(l->eye[2], -(most[k][0] + most[k][1]) / (2 * inner[k]));
+        l->eye[k] = 0.5 * (l->most[k][0] - l->most[k][1]);
+        l->eye[2] = smaller(l->eye[2], -(l->most[k][0] + l->most[k][1]) / (2 * inner[k]));
     }
 }
 
-static Look lookAt(const vplMeshDef* mesh, const Field* field)
+static Look lookAt(const vplScene* scene, const Field* field)
 {
     Look l;
-    measure(&l, mesh);
+    measure(&l, scene);
     normalize3(VIEW, l.ahead);
     normalize3((double[3]){-VIEW[2], 0, VIEW[0]}, l.right);
     vplCross3(l.right, l.ahead, l.up);
-    fit(&l, mesh, field->inner);
+    fit(&l, scene, field->inner);
     // Bounds too small for the transform of a lamp are taken as a point, which no camera can look at.
     for (int k = 0; k < 3 && l.radius < 2e-15; k++) {
         l.eye[k] = 0;
@@ -167,7 +195,7 @@ static Ground groundUnder(const Look* l, const Field* field)
     place(l, l->eye, eye);
     normalize3((double[3]){l->ahead[0], 0, l->ahead[2]}, g.ahead);
     // The mesh may have a face at its bottom: the ground is lower by a little, also where floats are coarse.
-    g.centre[1] = l->lowest - fmax(1e-3 * l->radius, fabs(l->lowest) * 0x1p-22);
+    g.centre[1] = l->low[1] - fmax(1e-3 * l->radius, fabs(l->low[1]) * 0x1p-22);
     const double fall = -l->ahead[1], level = l->up[1], slope = field->slopes[1];
     g.nearest = (eye[1] - g.centre[1]) / (fall + slope * level);
     g.most = (eye[1] - g.centre[1]) / (fall - slope * level);
@@ -205,7 +233,7 @@ static vplResult requireFit(const Adder* a, const char* purpose, vplFault fault)
 static vplResult addCamera(const Adder* a, const Ground* ground)
 {
     const Look* l = a->look;
-    double eye[3], target[3], nearest = l->nearest - l->eye[2], most = l->most - l->eye[2];
+    double eye[3], target[3], nearest = l->nearest - l->eye[2], most = l->farthest - l->eye[2];
     place(l, l->eye, eye);
     place(l, (double[3]){l->eye[0], l->eye[1], 0}, target);
     if (ground != NULL) {
@@ -220,8 +248,8 @@ static vplResult addCamera(const Adder* a, const Ground* ground)
     def.far = 1.1 * most;
     TRY(requireFit(a, "a camera can look at: its", vplCheckCamera(&def)));
     vplLog(a->scene->context, VPL_LOG_WARNING,
-           "%s: an OBJ file has no camera; it looks from (%g, %g, %g) at (%g, %g, %g)", a->path, eye[0],
-           eye[1], eye[2], target[0], target[1], target[2]);
+           "%s: the file has no camera; one looks from (%g, %g, %g) at (%g, %g, %g)", a->path, eye[0], eye[1],
+           eye[2], target[0], target[1], target[2]);
     return vplScene_AddCamera(a->scene, &def, NULL);
 }
 
@@ -346,35 +374,54 @@ static bool emits(const vplScene* scene)
             return true;
         }
     }
-    return false;
+    return scene->emitterCount > 0;
 }
 
-static vplResult fill(vplScene* scene, const char* path, const vplObjSceneDef* def)
+// Adds an object for each place of a mesh in the file.
+static vplResult addObjects(vplScene* scene, const char* path, vplModel* model)
 {
-    vplObjectDef object = vplDefaultObjectDef();
-    TRY(vplScene_LoadObj(scene, path, &object.mesh));
-    object.name = vplBaseName(path);
-    object.type = VPL_OBJECT_MESH;
-    object.material = -1;
-    TRY(vplScene_AddObject(scene, &object, NULL));
-    const bool light = !emits(scene);
+    TRY(vplScene_ReadModel(scene, path, true, model));
+    for (size_t i = 0; i < model->count; i++) {
+        const vplModelPart* part = &model->parts[i];
+        vplObjectDef object = vplDefaultObjectDef();
+        object.name = part->name != NULL ? part->name : vplBaseName(path);
+        object.type = VPL_OBJECT_MESH;
+        object.mesh = part->mesh;
+        object.material = -1;
+        object.transform = vplAffine_ToMat4(&part->toModel);
+        TRY(vplScene_AddObject(scene, &object, NULL));
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult fill(vplScene* scene, const char* path, const vplModelSceneDef* def)
+{
+    vplModel model = {.arena = vplArena_Create(scene->context)};
+    const vplResult result = addObjects(scene, path, &model);
+    vplArena_Destroy(model.arena);
+    TRY(result);
+    const bool light = !emits(scene), camera = scene->cameraCount == 0, ground = camera && def->ground;
     const Field field = fieldOf(def->aspect);
-    const Look look = lookAt(&scene->meshes[object.mesh], &field);
-    const Ground ground = groundUnder(&look, &field);
+    if (!light && !camera) {
+        return VPL_SUCCESS;
+    }
+    const Look look = lookAt(scene, &field);
+    const Ground under = groundUnder(&look, &field);
     const Adder adder = {scene, path, &look};
-    TRY(addCamera(&adder, def->ground ? &ground : NULL));
-    TRY(def->ground ? addGround(&adder, &ground) : VPL_SUCCESS);
+    TRY(camera ? addCamera(&adder, ground ? &under : NULL) : VPL_SUCCESS);
+    TRY(ground ? addGround(&adder, &under) : VPL_SUCCESS);
     return light ? addLight(&adder, field.slopes[1], def->areaLight) : VPL_SUCCESS;
 }
 
-vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
-                                vplScene** sceneOut)
+vplResult vplScene_LoadModelAlone(vplContext* context, const char* path, const vplModelSceneDef* def,
+                                  vplScene** sceneOut)
 {
-    if (def->cookie != OBJ_SCENE_COOKIE) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplObjSceneDef was not made by its default function");
+    if (def->cookie != MODEL_SCENE_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplModelSceneDef was not made by its default function");
     }
     if (!(def->aspect >= 1e-6 && def->aspect <= 1e6)) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplObjSceneDef.aspect is %g, must be in [1e-6, 1e6]",
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplModelSceneDef.aspect is %g, must be in [1e-6, 1e6]",
                        def->aspect);
     }
     vplScene* scene;
