@@ -80,6 +80,11 @@ TEST(MaterialsAreChecked, 1)
         {FLOAT(vplMaterialDef, diffuse.b), (double)NAN, "vplMaterialDef.diffuse[2] is nan"},
         {FLOAT(vplMaterialDef, emission.r), -1, "vplMaterialDef.emission[0] is -1"},
         {FLOAT(vplMaterialDef, emission.b), (double)BEYOND, "vplMaterialDef.emission[2] is 2e+15"},
+        {FLOAT(vplMaterialDef, textureScale[1]), (double)NAN, "vplMaterialDef.textureScale[1] is nan"},
+        {FLOAT(vplMaterialDef, textureOffset[0]), (double)BEYOND, "vplMaterialDef.textureOffset[0] is 2e+15"},
+        {DOUBLE(vplMaterialDef, textureRotation), (double)INFINITY, "vplMaterialDef.textureRotation is inf"},
+        {FLOAT(vplMaterialDef, opacity), 1.5, "vplMaterialDef.opacity is 1.5"},
+        {FLOAT(vplMaterialDef, alphaCutoff), -0.1, "vplMaterialDef.alphaCutoff is -0.1"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         vplMaterialDef def = vplDefaultMaterialDef();

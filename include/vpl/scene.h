@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The declared scene: cameras, materials, meshes, objects and emitters. Each addition checks all its numbers.
+// The declared scene: cameras, textures, materials, meshes, objects and emitters. Each addition checks all its numbers.
 #ifndef VPL_SCENE_H
 #define VPL_SCENE_H
 
@@ -24,11 +24,44 @@ typedef struct vplCameraDef {
 
 vplCameraDef vplDefaultCameraDef(void);
 
+// What lies beyond the edges of a texture: the picture again, its edge texels, or its mirror image.
+typedef enum vplTextureWrap { VPL_WRAP_REPEAT = 0, VPL_WRAP_CLAMP, VPL_WRAP_MIRROR } vplTextureWrap;
+
+// A picture that colours surfaces. The first texel is the left one of the top row. Texture coordinates have
+// (0, 0) at the bottom left corner of the picture and (1, 1) at the top right one, as in OBJ files. Exactly one
+// of `texels` and `linear` must be given.
+typedef struct vplTextureDef {
+    const char* name; // a file name or label, for messages; copied; NULL (default): unnamed
+    // width x height x channels values of 8 bits: sRGB colours or greys, linear alpha. Copied.
+    const unsigned char* texels;
+    // The same as linear floats in [0, 1]. Copied.
+    const float* linear;
+    int width, height;           // texels, [1, VPL_MAX_IMAGE_SIZE]
+    int channels;                // 1: grey, 2: grey and alpha, 3: RGB, 4: RGB and alpha; default 3
+    vplTextureWrap wrapU, wrapV; // default VPL_WRAP_REPEAT
+    uint32_t cookie;             // set by vplDefaultTextureDef
+} vplTextureDef;
+
+vplTextureDef vplDefaultTextureDef(void);
+
+// The opacity of a point is `opacity`, times the alpha of `texture` if alphaFromTexture, times the grey of
+// `alphaTexture` if there is one. Surfaces have no colour of their own where they let light through, and let it
+// through straight and from both sides alike.
 typedef struct vplMaterialDef {
-    const char* name; // copied; unique within the scene; NULL (default): unnamed
-    vplRgb diffuse;   // reflectance of both sides, [0, 1] per channel; default 0.5
-    vplRgb emission;  // radiance of the front side, W/(m^2 sr), >= 0; default 0
-    uint32_t cookie;  // set by vplDefaultMaterialDef
+    const char* name;      // copied; unique within the scene; NULL (default): unnamed
+    vplRgb diffuse;        // reflectance of both sides, [0, 1] per channel; default 0.5
+    vplRgb emission;       // radiance of the front side, W/(m^2 sr), >= 0; default 0
+    int texture;           // as vplScene_AddTexture gives it; multiplies the reflectance; default -1: none
+    float textureScale[2]; // of texture coordinates, before they are rotated; default 1
+    float textureOffset[2]; // added to texture coordinates after they are rotated; default 0
+    double textureRotation; // of texture coordinates, radians, from u towards v; default 0
+    int alphaTexture;       // its grey (the mean of its colours) multiplies the opacity; default -1: none
+    bool alphaFromTexture;  // the alpha of `texture`, which must be given, multiplies the opacity; default false
+    float opacity;          // share of the light that the surface stops, [0, 1]; default 1
+    // 0 (default): the opacity is a share. Above 0: the surface is solid where the opacity is at least
+    // alphaCutoff, and is not there elsewhere. [0, 1].
+    float alphaCutoff;
+    uint32_t cookie; // set by vplDefaultMaterialDef
 } vplMaterialDef;
 
 vplMaterialDef vplDefaultMaterialDef(void);
@@ -43,6 +76,10 @@ typedef struct vplMeshDef {
     const uint32_t* indices;
     // One per triangle, as vplScene_AddMaterial gives them; NULL (default): the object's material.
     const int* materials;
+    // u and v of each vertex; NULL (default): textures of the mesh show their bottom left texel only.
+    const float* texcoords;
+    // One per vertex, [0, 1] per channel; multiplies the reflectance; NULL (default): none.
+    const vplRgb* colors;
     int vertexCount;   // [0, VPL_MAX_TRIANGLES]; default 0
     int triangleCount; // [0, VPL_MAX_TRIANGLES]; default 0
     uint32_t cookie;   // set by vplDefaultMeshDef
@@ -155,6 +192,7 @@ void vplScene_GetOrigin(const vplScene* scene, double originOut[3]);
 // Each checks a def, copies it and returns its index in *indexOut (may be NULL). VPL_INVALID_ARGUMENT for a
 // value out of range, which the message names; VPL_OUT_OF_MEMORY.
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut);
+vplResult vplScene_AddTexture(vplScene* scene, const vplTextureDef* def, int* indexOut);
 vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut);
 vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut);
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut);
@@ -185,6 +223,7 @@ vplResult vplScene_LoadModel(vplScene* scene, const char* path, const vplObjectD
                              int* countOut);
 
 int vplScene_GetCameraCount(const vplScene* scene);
+int vplScene_GetTextureCount(const vplScene* scene);
 int vplScene_GetMaterialCount(const vplScene* scene);
 int vplScene_GetMeshCount(const vplScene* scene);
 int vplScene_GetObjectCount(const vplScene* scene);
@@ -192,6 +231,7 @@ int vplScene_GetEmitterCount(const vplScene* scene);
 
 // The declared defs; the scene owns their names and arrays. The index must be in range.
 const vplCameraDef* vplScene_GetCamera(const vplScene* scene, int index);
+const vplTextureDef* vplScene_GetTexture(const vplScene* scene, int index); // without `texels` and `linear`
 const vplMaterialDef* vplScene_GetMaterial(const vplScene* scene, int index);
 const vplMeshDef* vplScene_GetMesh(const vplScene* scene, int index);
 const vplObjectDef* vplScene_GetObject(const vplScene* scene, int index);
@@ -206,7 +246,7 @@ const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, i
 vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vplCameraDef* defOut);
 vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut);
 
-// Hash of all that pictures depend on: cameras, materials, meshes, objects, emitters and their paths, in
+// Hash of all that pictures depend on: cameras, textures, materials, meshes, objects, emitters and their paths, in
 // their order, without names. The same in every process and on every machine; it takes a pass over the
 // scene's data.
 uint64_t vplScene_GetHash(const vplScene* scene);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene.h"
+#include "scene/texture.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { CAMERA_COOKIE = 0x56504c34, MATERIAL_COOKIE, OBJECT_COOKIE, EMITTER_COOKIE, MESH_COOKIE };
+enum { CAMERA_COOKIE = 0x56504c34, MATERIAL_COOKIE, OBJECT_COOKIE, EMITTER_COOKIE, MESH_COOKIE, TEXTURE_COOKIE };
 
 static const double DEGREE = VPL_PI / 180;
 
@@ -16,7 +17,17 @@ vplCameraDef vplDefaultCameraDef(void)
 
 vplMaterialDef vplDefaultMaterialDef(void)
 {
-    return (vplMaterialDef){NULL, {0.5f, 0.5f, 0.5f}, {0, 0, 0}, MATERIAL_COOKIE};
+    return (vplMaterialDef){.diffuse = {0.5f, 0.5f, 0.5f},
+                            .texture = -1,
+                            .textureScale = {1, 1},
+                            .alphaTexture = -1,
+                            .opacity = 1,
+                            .cookie = MATERIAL_COOKIE};
+}
+
+vplTextureDef vplDefaultTextureDef(void)
+{
+    return (vplTextureDef){.channels = 3, .cookie = TEXTURE_COOKIE};
 }
 
 vplMeshDef vplDefaultMeshDef(void)
@@ -54,6 +65,9 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
 
 void vplScene_Destroy(vplScene* scene)
 {
+    for (int i = 0; scene != NULL && i < scene->textureCount; i++) {
+        vplTexture_Release(scene->textures[i].decoded);
+    }
     vplArena_Destroy(scene != NULL ? scene->arena : NULL);
 }
 
@@ -140,10 +154,26 @@ vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* inde
     return append(scene, LIST(scene, camera, cameras), &camera, indexOut);
 }
 
+vplResult vplScene_AddTexture(vplScene* scene, const vplTextureDef* def, int* indexOut)
+{
+    TRY(requireCookie(scene, "vplTextureDef", def->cookie == TEXTURE_COOKIE));
+    TRY(vplScene_ReportFault(scene, "vplTextureDef.", vplCheckTexture(def)));
+    vplSceneTexture texture = {.def = *def};
+    texture.def.texels = NULL;
+    texture.def.linear = NULL;
+    TRY(copyName(scene, &texture.def.name));
+    TRY(vplTexture_Create(scene->context, def, &texture.decoded));
+    const vplResult result = append(scene, LIST(scene, texture, textures), &texture, indexOut);
+    if (result != VPL_SUCCESS) {
+        vplTexture_Release(texture.decoded);
+    }
+    return result;
+}
+
 vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut)
 {
     TRY(requireCookie(scene, "vplMaterialDef", def->cookie == MATERIAL_COOKIE));
-    TRY(vplScene_ReportFault(scene, "vplMaterialDef.", vplCheckMaterial(def)));
+    TRY(vplScene_ReportFault(scene, "vplMaterialDef.", vplCheckMaterial(def, scene->textureCount)));
     for (int i = 0; def->name != NULL && i < scene->materialCount; i++) {
         if (scene->materials[i].name != NULL && strcmp(scene->materials[i].name, def->name) == 0) {
             return vplFail(scene->context, VPL_INVALID_ARGUMENT,
@@ -189,6 +219,8 @@ vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut
     copy.normals = copyArray(arena, def->normals, def->vertexCount, sizeof *def->normals);
     copy.indices = copyArray(arena, def->indices, def->triangleCount, 3 * sizeof *def->indices);
     copy.materials = copyArray(arena, def->materials, def->triangleCount, sizeof *def->materials);
+    copy.texcoords = copyArray(arena, def->texcoords, def->vertexCount, 2 * sizeof *def->texcoords);
+    copy.colors = copyArray(arena, def->colors, def->vertexCount, sizeof *def->colors);
     return vplScene_AdoptMesh(scene, &copy, arena, indexOut);
 }
 
@@ -237,6 +269,7 @@ vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* in
     }
 
 GETTERS(Camera, cameraCount, cameras[index].def)
+GETTERS(Texture, textureCount, textures[index].def)
 GETTERS(Material, materialCount, materials[index])
 GETTERS(Mesh, meshCount, meshes[index])
 GETTERS(Object, objectCount, objects[index])

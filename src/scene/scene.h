@@ -23,18 +23,24 @@ typedef struct vplEmitter {
     vplTrack track;
 } vplEmitter;
 
+typedef struct vplSceneTexture {
+    vplTextureDef def; // without texels
+    struct vplTexture* decoded;
+} vplSceneTexture;
+
 struct vplScene {
     vplContext* context;
     vplArena* arena; // owns the scene and everything in it
     uint64_t stamp;  // changes with each addition
     double origin[3];
     vplCamera* cameras;
+    vplSceneTexture* textures;
     vplMaterialDef* materials;
     vplMeshDef* meshes;
     vplObjectDef* objects;
     vplEmitter* emitters;
-    int cameraCount, materialCount, meshCount, objectCount, emitterCount;
-    size_t cameraCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
+    int cameraCount, textureCount, materialCount, meshCount, objectCount, emitterCount;
+    size_t cameraCapacity, textureCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
 };
 
 // Adds a mesh without checking it. Its arrays are in `arena`, which becomes part of the scene's; on failure
@@ -60,7 +66,8 @@ typedef struct vplFault {
 } vplFault;
 
 vplFault vplCheckCamera(const vplCameraDef* def);
-vplFault vplCheckMaterial(const vplMaterialDef* def);
+vplFault vplCheckTexture(const vplTextureDef* def);
+vplFault vplCheckMaterial(const vplMaterialDef* def, int textureCount);
 vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);

@@ -2,6 +2,7 @@
 // A hash of what a scene says, for files that belong to one.
 #include "base/hash.h"
 #include "scene/scene.h"
+#include "scene/texture.h"
 
 #include <string.h>
 
@@ -69,14 +70,50 @@ static uint64_t addEmitter(uint64_t state, const vplEmitter* emitter)
     return state;
 }
 
+static uint64_t addTexture(uint64_t state, const vplTexture* t)
+{
+    const vplTextureLevel* level = &t->levels[0];
+    const size_t texels = (size_t)level->width * (size_t)level->height;
+    uint32_t words[1024]; // two per texel
+    state = addInt(addInt(addInt(addInt(state, level->width), level->height), (int)t->wrapU), (int)t->wrapV);
+    for (size_t i = 0; i < texels; i += 512) {
+        const size_t n = texels - i < 512 ? texels - i : 512;
+        for (size_t k = 0; k < 2 * n; k++) {
+            const uint16_t* pair = level->texels + 2 * (2 * i + k);
+            words[k] = pair[0] | (uint32_t)pair[1] << 16;
+        }
+        state = vplHashWords(state, words, 2 * n);
+    }
+    return state;
+}
+
+// Materials without textures and opacity have the hash that they had before there were any.
+static uint64_t addMaterial(uint64_t state, const vplMaterialDef* d)
+{
+    state = addColour(addColour(state, d->diffuse), d->emission);
+    if (d->texture >= 0 || d->alphaTexture >= 0) {
+        const float placing[4] = {d->textureScale[0], d->textureScale[1], d->textureOffset[0],
+                                  d->textureOffset[1]};
+        state = addNumber(vplHashFloats(addInt(state, d->texture), placing, 4), d->textureRotation);
+    }
+    if (d->alphaTexture >= 0 || d->alphaFromTexture || d->opacity != 1) {
+        const float opacity[2] = {d->opacity, d->alphaCutoff};
+        state = vplHashFloats(addInt(addInt(state, d->alphaTexture), d->alphaFromTexture), opacity, 2);
+    }
+    return state;
+}
+
 static uint64_t addMesh(uint64_t state, const vplMeshDef* d)
 {
     const size_t vertices = (size_t)d->vertexCount, triangles = (size_t)d->triangleCount;
     state = addInt(addInt(state, d->vertexCount), d->triangleCount);
-    state = addInt(state, (d->normals != NULL ? 1 : 0) | (d->materials != NULL ? 2 : 0));
+    state = addInt(state, (d->normals != NULL ? 1 : 0) | (d->materials != NULL ? 2 : 0) |
+                              (d->texcoords != NULL ? 4 : 0) | (d->colors != NULL ? 8 : 0));
     if (vertices > 0) {
         state = vplHashFloats(state, &d->positions[0].x, 3 * vertices);
         state = d->normals != NULL ? vplHashFloats(state, &d->normals[0].x, 3 * vertices) : state;
+        state = d->texcoords != NULL ? vplHashFloats(state, d->texcoords, 2 * vertices) : state;
+        state = d->colors != NULL ? vplHashFloats(state, &d->colors[0].r, 3 * vertices) : state;
     }
     if (triangles > 0) {
         state = vplHashWords(state, d->indices, 3 * triangles);
@@ -102,8 +139,11 @@ uint64_t vplScene_GetHash(const vplScene* s)
     for (int i = 0; i < s->cameraCount; i++) {
         state = addCamera(state, &s->cameras[i]);
     }
+    for (int i = 0; i < s->textureCount; i++) {
+        state = addTexture(state, s->textures[i].decoded);
+    }
     for (int i = 0; i < s->materialCount; i++) {
-        state = addColour(addColour(state, s->materials[i].diffuse), s->materials[i].emission);
+        state = addMaterial(state, &s->materials[i]);
     }
     for (int i = 0; i < s->meshCount; i++) {
         state = addMesh(state, &s->meshes[i]);

@@ -85,7 +85,7 @@ static vplResult readMaterials(vplSceneLoader* l, const vplJson* root)
         TRY(vplJson_CheckKeys(&material, keys));
         TRY(vplJson_ReadFloats(&material, "diffuse", 3, &def.diffuse));
         TRY(vplJson_ReadFloats(&material, "emission", 3, &def.emission));
-        TRY(vplJson_ReportFault(&material, vplCheckMaterial(&def)));
+        TRY(vplJson_ReportFault(&material, vplCheckMaterial(&def, l->scene->textureCount)));
         TRY(vplScene_AddMaterial(l->scene, &def, NULL));
     }
     return VPL_SUCCESS;

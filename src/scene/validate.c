@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 static const vplFault FINE = {NULL, -1, ""};
+static const double MAX_ROTATION = 1e6; // radians; sine and cosine keep ten digits
 
 static vplFault fault(const char* field, int index, const char* format, ...) VPL_PRINTF(3, 4);
 
@@ -83,10 +84,71 @@ vplFault vplCheckCamera(const vplCameraDef* def)
     return FINE;
 }
 
-vplFault vplCheckMaterial(const vplMaterialDef* def)
+static vplFault checkWrap(const char* field, vplTextureWrap wrap)
+{
+    return wrap == VPL_WRAP_REPEAT || wrap == VPL_WRAP_CLAMP || wrap == VPL_WRAP_MIRROR
+               ? FINE
+               : fault(field, -1, "is %d, must be a vplTextureWrap", (int)wrap);
+}
+
+vplFault vplCheckTexture(const vplTextureDef* def)
+{
+    if (def->width < 1 || def->width > VPL_MAX_IMAGE_SIZE || def->height < 1 ||
+        def->height > VPL_MAX_IMAGE_SIZE) {
+        return fault("width", -1, "and height are %d and %d, must be in [1, %d]", def->width, def->height,
+                     VPL_MAX_IMAGE_SIZE);
+    }
+    if (def->channels < 1 || def->channels > 4) {
+        return fault("channels", -1, "is %d, must be in [1, 4]", def->channels);
+    }
+    if ((def->texels == NULL) == (def->linear == NULL)) {
+        return fault("texels", -1, "or linear must be given, and only one of them");
+    }
+    const size_t count = (size_t)def->width * (size_t)def->height * (size_t)def->channels;
+    for (size_t i = 0; def->linear != NULL && i < count; i++) {
+        if (!(def->linear[i] >= 0 && def->linear[i] <= 1)) {
+            return fault("linear", (int)i, "is %g, must be in [0, 1]", (double)def->linear[i]);
+        }
+    }
+    vplFault f = checkWrap("wrapU", def->wrapU);
+    return f.field ? f : checkWrap("wrapV", def->wrapV);
+}
+
+static vplFault checkIndex(const char* field, int index, int count)
+{
+    return index >= -1 && index < count
+               ? FINE
+               : fault(field, -1, "is %d, must be -1 or one of the scene's %d textures", index, count);
+}
+
+static vplFault checkShare(const char* field, float value)
+{
+    return value >= 0 && value <= 1 ? FINE : fault(field, -1, "is %g, must be in [0, 1]", (double)value);
+}
+
+static vplFault checkPair(const char* field, const float pair[2])
+{
+    return checkPoint(field, vplVec(pair[0], pair[1], 0));
+}
+
+vplFault vplCheckMaterial(const vplMaterialDef* def, int textureCount)
 {
     vplFault f = checkColour("diffuse", def->diffuse, 1);
-    return f.field ? f : checkColour("emission", def->emission, VPL_MAX_MAGNITUDE);
+    f = f.field ? f : checkColour("emission", def->emission, VPL_MAX_MAGNITUDE);
+    f = f.field ? f : checkIndex("texture", def->texture, textureCount);
+    f = f.field ? f : checkPair("textureScale", def->textureScale);
+    f = f.field ? f : checkPair("textureOffset", def->textureOffset);
+    f = f.field ? f : checkIndex("alphaTexture", def->alphaTexture, textureCount);
+    f = f.field ? f : checkShare("opacity", def->opacity);
+    f = f.field ? f : checkShare("alphaCutoff", def->alphaCutoff);
+    if (f.field == NULL && !(fabs(def->textureRotation) <= MAX_ROTATION)) {
+        return fault("textureRotation", -1, "is %g, must be in [%g, %g] radians", def->textureRotation,
+                     -MAX_ROTATION, MAX_ROTATION);
+    }
+    if (f.field == NULL && def->alphaFromTexture && def->texture < 0) {
+        return fault("alphaFromTexture", -1, "is true, must be false without a texture");
+    }
+    return f;
 }
 
 vplFault vplCheckMesh(const vplMeshDef* def, int materialCount)
@@ -102,6 +164,8 @@ vplFault vplCheckMesh(const vplMeshDef* def, int materialCount)
     for (int i = 0; i < def->vertexCount; i++) {
         vplFault f = checkPoint("positions", def->positions[i]);
         f = f.field || def->normals == NULL ? f : checkDirection("normals", def->normals[i]);
+        f = f.field || def->texcoords == NULL ? f : checkPair("texcoords", def->texcoords + 2 * (size_t)i);
+        f = f.field || def->colors == NULL ? f : checkColour("colors", def->colors[i], 1);
         if (f.field) {
             f.index = i;
             return f;
