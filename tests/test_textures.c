@@ -123,9 +123,10 @@ TEST(TheHashOfASceneKnowsTexturesAndOpacity, 1)
     glass.opacity = 0.5f;
     turned.textureRotation = 1;
     leaf.alphaFromTexture = true;
-    const uint64_t hashes[] = {hashOf(context, smallTexture(), material), hashOf(context, flipped, material),
-                               hashOf(context, clamped, material),        hashOf(context, smallTexture(), glass),
-                               hashOf(context, smallTexture(), turned),   hashOf(context, smallTexture(), leaf)};
+    const uint64_t hashes[] = {
+        hashOf(context, smallTexture(), material), hashOf(context, flipped, material),
+        hashOf(context, clamped, material),        hashOf(context, smallTexture(), glass),
+        hashOf(context, smallTexture(), turned),   hashOf(context, smallTexture(), leaf)};
     for (size_t i = 0; i < sizeof hashes / sizeof *hashes; i++) {
         for (size_t k = 0; k < i; k++) {
             assert_true(hashes[i] != hashes[k]);

@@ -48,16 +48,17 @@ vplTextureDef vplDefaultTextureDef(void);
 // `alphaTexture` if there is one. Surfaces have no colour of their own where they let light through, and let it
 // through straight and from both sides alike.
 typedef struct vplMaterialDef {
-    const char* name;      // copied; unique within the scene; NULL (default): unnamed
-    vplRgb diffuse;        // reflectance of both sides, [0, 1] per channel; default 0.5
-    vplRgb emission;       // radiance of the front side, W/(m^2 sr), >= 0; default 0
-    int texture;           // as vplScene_AddTexture gives it; multiplies the reflectance; default -1: none
-    float textureScale[2]; // of texture coordinates, before they are rotated; default 1
+    const char* name;       // copied; unique within the scene; NULL (default): unnamed
+    vplRgb diffuse;         // reflectance of both sides, [0, 1] per channel; default 0.5
+    vplRgb emission;        // radiance of the front side, W/(m^2 sr), >= 0; default 0
+    int texture;            // as vplScene_AddTexture gives it; multiplies the reflectance; default -1: none
+    float textureScale[2];  // of texture coordinates, before they are rotated; default 1
     float textureOffset[2]; // added to texture coordinates after they are rotated; default 0
     double textureRotation; // of texture coordinates, radians, from u towards v; default 0
     int alphaTexture;       // its grey (the mean of its colours) multiplies the opacity; default -1: none
-    bool alphaFromTexture;  // the alpha of `texture`, which must be given, multiplies the opacity; default false
-    float opacity;          // share of the light that the surface stops, [0, 1]; default 1
+    bool
+        alphaFromTexture; // the alpha of `texture`, which must be given, multiplies the opacity; default false
+    float opacity;        // share of the light that the surface stops, [0, 1]; default 1
     // 0 (default): the opacity is a share. Above 0: the surface is solid where the opacity is at least
     // alphaCutoff, and is not there elsewhere. [0, 1].
     float alphaCutoff;

@@ -49,6 +49,9 @@ typedef struct vplPly {
 // Reads the header of a file. The first line, which ends as the others do, is "ply".
 vplResult vplPly_ReadHeader(vplPly* ply);
 
+// The place of the next value, for messages.
+const char* vplPly_Place(vplPly* ply);
+
 // Reads the next value. *out of an integer type is exact; a word for NaN or infinity in a text is read as NaN.
 // `what` completes "expected ...".
 vplResult vplPly_ReadValue(vplPly* ply, vplPlyType type, const char* what, double* out);

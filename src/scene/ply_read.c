@@ -88,7 +88,7 @@ static vplResult readVertex(Reader* r, const vplPlyElement* e, size_t index)
     for (int i = 0; i < e->propertyCount; i++) {
         const vplPlyProperty* p = &r->ply.properties[e->first + i];
         const int slot = r->slotOf[i];
-        const char* at = r->ply.at;
+        const char* at = vplPly_Place(&r->ply);
         if (slot < 0) {
             TRY(vplPly_SkipProperty(&r->ply, p));
             continue;
@@ -199,7 +199,7 @@ static vplResult readCorners(Reader* r, const vplPlyProperty* p, bool strips, in
     TRY(vplArena_Reserve(r->scratch, &r->corners, &r->cornerCapacity, (size_t)*countOut, sizeof *r->corners));
     for (int64_t i = 0; i < *countOut; i++) {
         double index = 0;
-        const char* at = r->ply.at;
+        const char* at = vplPly_Place(&r->ply);
         TRY(vplPly_ReadValue(&r->ply, p->type, "an index of a vertex", &index));
         const bool good = index >= 0 && index < (double)r->raw.vertexCount && index == floor(index);
         if (!good && !(strips && index == -1)) {
@@ -229,7 +229,7 @@ static vplResult readFaces(Reader* r, const vplPlyElement* e)
     TRY(vplPly_RequireRoom(&r->ply, e));
     for (int64_t i = 0; i < e->count; i++) {
         int64_t corners = 0;
-        const char* at = r->ply.at;
+        const char* at = vplPly_Place(&r->ply);
         TRY(i % 65536 == 65535 ? vplAsk(r->context) : VPL_SUCCESS);
         for (int p = 0; p < e->propertyCount; p++) {
             const vplPlyProperty* property = &r->ply.properties[e->first + p];

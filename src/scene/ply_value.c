@@ -53,14 +53,19 @@ static bool isSpace(char c)
     return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
+const char* vplPly_Place(vplPly* ply)
+{
+    while (ply->format == VPL_PLY_ASCII && ply->at < endOf(ply) && isSpace(*ply->at)) {
+        ply->at++;
+    }
+    return ply->at;
+}
+
 // Cuts the next word off a text; an empty one at its end.
 static vplWord nextWord(vplPly* ply)
 {
     const char* end = endOf(ply);
-    while (ply->at < end && isSpace(*ply->at)) {
-        ply->at++;
-    }
-    const char* start = ply->at;
+    const char* start = vplPly_Place(ply);
     while (ply->at < end && !isSpace(*ply->at)) {
         ply->at++;
     }
@@ -142,7 +147,7 @@ vplResult vplPly_ReadValue(vplPly* ply, vplPlyType type, const char* what, doubl
 vplResult vplPly_ReadCount(vplPly* ply, const vplPlyProperty* list, int64_t* out)
 {
     double count = 0;
-    const char* at = ply->at;
+    const char* at = vplPly_Place(ply);
     TRY(vplPly_ReadValue(ply, list->countType, "the length of a list", &count));
     const int64_t room = endOf(ply) - ply->at;
     const int64_t most = ply->format == VPL_PLY_ASCII ? room / 2 + 1 : room / SIZES[list->type];

@@ -176,6 +176,8 @@ static vplMeshDef makeDef(const Welder* w, vplRawMesh* raw)
         def.normals = vplArena_Copy(raw->arena, w->normalOf, vertices, sizeof *w->normalOf);
         vplArena_Free(raw->arena, raw->normals);
     }
+    def.colors = gather(raw->arena, raw->colors, w->fromOf, vertices, sizeof *raw->colors);
+    def.texcoords = gather(raw->arena, raw->texcoords, w->fromOf, vertices, 2 * sizeof *raw->texcoords);
     def.indices = cut(raw->arena, raw->indices, raw->triangleCount, 3 * sizeof *raw->indices);
     def.materials = cut(raw->arena, raw->materials, raw->triangleCount, sizeof *raw->materials);
     return def;
@@ -195,7 +197,7 @@ static vplResult weld(Welder* w, vplRawMesh* raw, vplContext* context)
         return vplFail(context, VPL_LIMIT, "%s: %u different corners, at most %d are allowed", raw->file,
                        w->index.count, VPL_MAX_TRIANGLES);
     }
-    if (w->empty > 0) {
+    if (w->empty > 0 && raw->triangleCount > 0) {
         vplLog(context, VPL_LOG_INFO, "%s: left out %lld triangles without area", raw->file, w->empty);
     }
     if (w->directionless > 0) {

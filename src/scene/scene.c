@@ -6,7 +6,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CAMERA_COOKIE = 0x56504c34, MATERIAL_COOKIE, OBJECT_COOKIE, EMITTER_COOKIE, MESH_COOKIE, TEXTURE_COOKIE };
+enum {
+    CAMERA_COOKIE = 0x56504c34,
+    MATERIAL_COOKIE,
+    OBJECT_COOKIE,
+    EMITTER_COOKIE,
+    MESH_COOKIE,
+    TEXTURE_COOKIE
+};
 
 static const double DEGREE = VPL_PI / 180;
 

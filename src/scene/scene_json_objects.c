@@ -99,17 +99,18 @@ static vplResult readModel(vplSceneLoader* l, const vplJson* object, int* out)
     const char* name = NULL;
     const vplJson member = vplJson_Member(object, "file");
     TRY(vplJson_ReadString(object, "file", &name));
-    if (!vplIsModelPath(name)) {
-        return vplJson_Fail(&member, "is \"%.80s\", must end in " VPL_MODEL_ENDINGS, name);
-    }
     char* path = vplPathBeside(l->json.context, l->json.name, name, strlen(name));
     if (path == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    const vplResult result =
-        vplIsRegularFile(path)
-            ? readModelFile(l, path, out)
-            : vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", name, path);
+    vplResult result;
+    if (!vplIsRegularFile(path)) {
+        result = vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", name, path);
+    } else if (!vplIsModelPath(path)) {
+        result = vplJson_Fail(&member, "is \"%.80s\", must end in " VPL_MODEL_ENDINGS, name);
+    } else {
+        result = readModelFile(l, path, out);
+    }
     vplFree(l->json.context, path);
     return result;
 }

@@ -22,7 +22,7 @@ static vplResult addCorner(Stl* s, vplVec3 p)
     if (count == UINT32_MAX) {
         return vplFail(s->text->context, VPL_LIMIT, "%s: more than %u corners", s->text->file, UINT32_MAX);
     }
-    TRY(vplArena_Reserve(s->raw->arena, s->raw->positions, &s->capacity, count + 1, sizeof p));
+    TRY(vplArena_Reserve(s->raw->arena, &s->raw->positions, &s->capacity, count + 1, sizeof p));
     s->raw->positions[s->raw->vertexCount++] = p;
     const uint32_t c = (uint32_t)count;
     return count % 3 < 2 ? VPL_SUCCESS

@@ -189,8 +189,10 @@ static void addBilinear(const vplTexture* t, int index, float u, float v, float 
     const vplTextureLevel* l = &t->levels[index];
     const float x = u * (float)l->width - 0.5f, y = (1 - v) * (float)l->height - 0.5f;
     const float left = floorf(x), top = floorf(y), fx = x - left, fy = y - top;
-    const int x0 = wrapIndex((int)left, l->width, t->wrapU), x1 = wrapIndex((int)left + 1, l->width, t->wrapU);
-    const int y0 = wrapIndex((int)top, l->height, t->wrapV), y1 = wrapIndex((int)top + 1, l->height, t->wrapV);
+    const int x0 = wrapIndex((int)left, l->width, t->wrapU),
+              x1 = wrapIndex((int)left + 1, l->width, t->wrapU);
+    const int y0 = wrapIndex((int)top, l->height, t->wrapV),
+              y1 = wrapIndex((int)top + 1, l->height, t->wrapV);
     const uint16_t* upper = l->texels + VPL_TEXTURE_CHANNELS * (size_t)y0 * (size_t)l->width;
     const uint16_t* lower = l->texels + VPL_TEXTURE_CHANNELS * (size_t)y1 * (size_t)l->width;
     const uint16_t *a = upper + VPL_TEXTURE_CHANNELS * x0, *b = upper + VPL_TEXTURE_CHANNELS * x1;

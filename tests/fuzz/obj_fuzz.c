@@ -49,7 +49,8 @@ static void requireMesh(const vplScene* scene)
         REQUIRE(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
     }
     for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
-        REQUIRE(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field == NULL);
+        REQUIRE(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field ==
+                NULL);
     }
 }
 
