@@ -59,7 +59,7 @@ TEST_ALONE(WhatIsNotUnderstoodIsToldOnceEach)
     readText(&d, "mtllib a.mtl\nmtllib a.mtl\n" TRIANGLE "usemtl a\nf 1 2 3\nl 1 2\nl 2 3\np 1\nvp 0 0\n");
     static const char* const told[] = {
         "a.mtl:2:1: Kd above 1 is taken as 1 (2 such lines)",
-        "a.mtl:3:1: map_Kd is not supported and has no effect\n",
+        "a.png: there is no such file; it is taken as grey\n",
         "a.mtl:15:1: bump is not supported and has no effect\n",
         "a.mtl:16:4: spectral is not supported and has no effect\n",
         "a.mtl:17:8: this material has a definition already, which stays (2 such",

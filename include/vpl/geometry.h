@@ -97,6 +97,7 @@ typedef struct vplGeometry {
     double area;                  // of all triangles, square metres
     double meanReflectance;       // area-weighted, mean of the channels; 0 where there is no area
     bool emits;                   // some triangle may emit
+    const struct vplPaint* paint; // textures and colours of vertices; NULL: surfaces have one colour each
     struct vplBvh* rayTree;       // accelerates rays; NULL: there is none
     struct vplArena* arena;       // owns the arrays
     vplContext* context;

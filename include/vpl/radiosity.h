@@ -339,6 +339,10 @@ typedef struct vplPatchDraw {
     const vplRgb* values;       // one per side
     bool reflect;               // values are irradiance: multiply by the patch's reflectance / pi
     bool outlines;              // draw edges of patches dark
+    // With `reflect`: the reflectance of a triangle of the geometry in pixel (x, y), instead of the patch's.
+    // NULL: the geometry has no textures and no colours of vertices.
+    vplRgb (*reflectance)(const void* user, int triangle, int x, int y);
+    const void* user; // passed to reflectance
 } vplPatchDraw;
 
 // Adds the mesh to an image: one draw of all fronts, one of all backs. Sides that light does not reach hide

@@ -4,6 +4,7 @@
 #include "geometry/bvh.h"
 #include "geometry/formula.h"
 #include "geometry/object_build.h"
+#include "geometry/paint.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 
@@ -92,7 +93,7 @@ static void summarise(vplGeometry* g)
     double reflecting = 0;
     for (int i = 0; i < g->triangleCount; i++) {
         const vplMaterialDef* material = &g->materials[g->triangleMaterials[i]];
-        const vplRgb rho = material->diffuse;
+        const vplRgb rho = vplGeometry_ReflectanceOf(g, i);
         const double area = vplGeometry_TriangleArea(g, i);
         g->area += area;
         reflecting += area * ((double)rho.r + (double)rho.g + (double)rho.b) / 3;
@@ -120,6 +121,7 @@ static vplResult build(const vplScene* scene, vplGeometry* g)
     vplScene_GetOrigin(scene, g->origin);
     TRY(allocate(scene, g, &builder));
     TRY(fill(g, &builder));
+    TRY(vplBuildPaint(scene, g, builder.objects));
     summarise(g);
     TRY(vplMarkCoplanar(g, builder.objects));
     warnOfDistance(g);
@@ -135,6 +137,9 @@ vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geome
         g->context = scene->context;
         g->arena = arena;
         result = build(scene, g);
+        if (result != VPL_SUCCESS) {
+            vplReleasePaint(g);
+        }
     }
     return vplArena_Deliver(arena, result, g, geometryOut);
 }
@@ -162,6 +167,7 @@ void vplGeometry_Destroy(vplGeometry* geometry)
 {
     if (geometry != NULL) {
         vplBvh_Destroy(geometry->rayTree);
+        vplReleasePaint(geometry);
         vplArena_Destroy(geometry->arena);
     }
 }

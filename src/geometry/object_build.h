@@ -26,6 +26,13 @@ vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def);
 // Fills the vertices and triangles of object `index`, whose placement, counts and first indices are set.
 void vplBuildObject(const vplGeometryBuilder* builder, int index);
 
+// Sets geometry->paint, and the mean reflectances of `objects`, if the scene shows textures or colours of
+// vertices. VPL_OUT_OF_MEMORY.
+vplResult vplBuildPaint(const vplScene* scene, vplGeometry* geometry, vplGeometryObject* objects);
+
+// Releases the textures of a geometry that is about to be destroyed.
+void vplReleasePaint(const vplGeometry* geometry);
+
 // Sets `coplanar` of the objects of a geometry whose triangles and bounds are known. VPL_OUT_OF_MEMORY.
 vplResult vplMarkCoplanar(const vplGeometry* geometry, vplGeometryObject* objects);
 

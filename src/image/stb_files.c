@@ -6,6 +6,7 @@
 #include "base/arena.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
+#include "image/texels.h"
 #include "math/scalar.h"
 
 #include <limits.h>
@@ -107,35 +108,56 @@ vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vp
     return VPL_SUCCESS;
 }
 
-vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                       vplImage** imageOut)
+// Decodes codes with `channels` channels, or with those of the file if that is 0.
+static vplTexels decodeCodes(const uint8_t* bytes, size_t size, int channels)
 {
     // A BMP's height is negative where rows go down; stb takes its absolute value, which -2^31 has not.
     static const uint8_t least[4] = {0, 0, 0, 0x80};
+    vplTexels t = {.reason = "its data is damaged"};
     if (size >= 26 && memcmp(bytes, "BM", 2) == 0 && bytes[14] != 12 && memcmp(bytes + 22, least, 4) == 0) {
-        return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read the picture: its height is -2147483648",
-                       path);
+        t.reason = "its height is -2147483648";
+        return t;
     }
-    int width = 0, height = 0, channels;
-    uint8_t* codes =
-        size <= INT_MAX ? stbi_load_from_memory(bytes, (int)size, &width, &height, &channels, 3) : NULL;
-    if (codes == NULL) {
-        const char* reason = stbi_failure_reason();
-        return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read the picture: %s", path,
-                       reason != NULL && *reason != 0 ? reason : "its data is damaged");
+    int found = 0;
+    if (size <= INT_MAX) {
+        t.codes = stbi_load_from_memory(bytes, (int)size, &t.width, &t.height, &found, channels);
+    }
+    t.channels = channels != 0 ? channels : found;
+    const char* reason = t.codes == NULL ? stbi_failure_reason() : NULL;
+    t.reason = reason != NULL && *reason != 0 ? reason : t.reason;
+    return t;
+}
+
+vplTexels vplTexels_Decode(const uint8_t* bytes, size_t size)
+{
+    return decodeCodes(bytes, size, 0);
+}
+
+void vplTexels_Free(vplTexels* texels)
+{
+    stbi_image_free(texels->codes);
+    texels->codes = NULL;
+}
+
+vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut)
+{
+    vplTexels t = decodeCodes(bytes, size, 3);
+    if (t.codes == NULL) {
+        return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read the picture: %s", path, t.reason);
     }
     vplImage* image;
-    vplResult result = vplImage_Create(context, width, height, &image);
+    vplResult result = vplImage_Create(context, t.width, t.height, &image);
     if (result == VPL_SUCCESS) {
         float linear[256];
         for (int code = 0; code < 256; code++) {
             linear[code] = vplSrgb_Decode((float)code / 255.0f);
         }
-        for (size_t i = 0; i < 3 * (size_t)width * (size_t)height; i++) {
-            image->pixels[i] = linear[codes[i]];
+        for (size_t i = 0; i < 3 * (size_t)t.width * (size_t)t.height; i++) {
+            image->pixels[i] = linear[t.codes[i]];
         }
         *imageOut = image;
     }
-    stbi_image_free(codes);
+    vplTexels_Free(&t);
     return result;
 }

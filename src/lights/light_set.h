@@ -50,6 +50,11 @@ static inline void vplSurface_Put(vplSurface* surface, int lane, vplVec3 positio
     surface->nz[lane] = normal.z;
 }
 
+static inline vplVec3 vplSurface_At(const vplSurface* surface, int lane)
+{
+    return vplVec(surface->px[lane], surface->py[lane], surface->pz[lane]);
+}
+
 // The direction to one virtual light from a point, as vplWayToLight gives it.
 static inline vplVec3 vplWayTo(const vplShadeLight* light, vplVec3 from)
 {

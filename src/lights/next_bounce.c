@@ -8,6 +8,7 @@
 #include "base/rng.h"
 #include "geometry/bvh.h"
 #include "geometry/emission.h"
+#include "geometry/paint.h"
 #include "lights/light_set.h"
 #include "math/sampling.h"
 
@@ -76,7 +77,9 @@ static void shoot(const Shooting* s, int ray)
     }
     // Its flux divided by the probability that a ray starts there.
     const double carried = (double)v->weight / from->particleCount * (total / fluxOf(from, i));
-    const vplRgb albedo = s->geometry->materials[s->geometry->triangleMaterials[hit.triangle]].diffuse;
+    const vplFootprint footprint =
+        vplUpright(s->geometry, hit.triangle, vplShareOfArea(s->geometry, s->def->count));
+    const vplRgb albedo = vplGeometry_Reflectance(s->geometry, hit.triangle, hit.position, &footprint);
     const vplRgb light = vplScaleRadiometric(carried, vplRgbMul(v->light, albedo));
     if (light.r > 0 || light.g > 0 || light.b > 0) {
         s->slots[ray] = (vplVirtualLight){

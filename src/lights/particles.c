@@ -14,6 +14,7 @@
 
 #include "base/arena.h"
 #include "geometry/bvh.h"
+#include "geometry/paint.h"
 #include "lights/light_set.h"
 #include "math/sampling.h"
 #include "math/vec.h"
@@ -72,9 +73,10 @@ static const vplReflectiveMap* mapOf(const Simulation* s, const vplStart* p)
 static vplRgb reflectanceAt(const Simulation* s, const vplHit* hit)
 {
     const vplGeometry* g = s->geometry;
+    const vplFootprint f = vplUpright(g, hit->triangle, vplShareOfArea(g, s->def.particleCount));
     return s->def.geometry == VPL_PARTICLE_GEOMETRY_OBB
                ? g->objects[hit->object].reflectance
-               : g->materials[g->triangleMaterials[hit->triangle]].diffuse;
+               : vplGeometry_Reflectance(g, hit->triangle, hit->position, &f);
 }
 
 // Smooth surfaces receive by their shading normal: cos(shading) / cos(geometric) of what hit the triangle.

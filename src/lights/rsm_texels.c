@@ -5,6 +5,7 @@
 
 #include "base/context.h"
 #include "geometry/emission.h"
+#include "geometry/paint.h"
 #include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/vec.h"
@@ -116,11 +117,14 @@ bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* g
     const Place p = placeOf(map, texel);
     const vplVec3 lit = vplDot(hit.normal, direction) > 0 ? vplNegate(hit.normal) : hit.normal;
     const vplVec3 smooth = vplGeometry_ShadingNormal(geometry, &hit);
+    const bool parallel = map->emitter.type == VPL_EMITTER_DIRECTIONAL;
+    const float texelWidth = 2 * (float)map->extent[1] / (float)map->size; // metres, or metres per metre
+    const vplFootprint footprint = {direction, parallel ? texelWidth : texelWidth * hit.t};
     *texelOut = (vplReflectiveTexel){
         .distance = hit.t,
         .position = hit.position,
         .normal = vplDot(smooth, lit) < 0 ? vplNegate(smooth) : smooth,
-        .albedo = geometry->materials[geometry->triangleMaterials[hit.triangle]].diffuse,
+        .albedo = vplGeometry_Reflectance(geometry, hit.triangle, hit.position, &footprint),
         .flux = fluxOf(map, &p),
         .triangle = hit.triangle,
     };

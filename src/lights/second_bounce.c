@@ -6,6 +6,7 @@
 // weight 4 (1 - p^2) / (1 + p^2)^3, whose mean over the disk is 1.
 #include "base/arena.h"
 #include "base/rng.h"
+#include "geometry/paint.h"
 #include "lights/light_set.h"
 #include "math/sampling.h"
 #include "math/vec.h"
@@ -84,7 +85,9 @@ static void takeSample(Sampling* s, int cluster, int k, int m, int particle)
     }
     const double weight =
         s->def->weight == VPL_SECOND_WEIGHT_PRINTED ? 1 : vplParaboloid_Weight((double)x, (double)y);
-    const vplRgb albedo = s->geometry->materials[s->geometry->triangleMaterials[hit.triangle]].diffuse;
+    const vplFootprint footprint =
+        vplUpright(s->geometry, hit.triangle, vplShareOfArea(s->geometry, s->def->count));
+    const vplRgb albedo = vplGeometry_Reflectance(s->geometry, hit.triangle, hit.position, &footprint);
     const vplRgb light = vplRgbScale((float)weight, vplRgbMul(flux, albedo));
     if (light.r > 0 || light.g > 0 || light.b > 0) {
         s->arrays.lights[s->set->lightCount++] = (vplVirtualLight){

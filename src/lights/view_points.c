@@ -3,6 +3,7 @@
 // rays of a packet start close together.
 #include "lights/placement.h"
 
+#include "geometry/paint.h"
 #include "geometry/triangle.h"
 #include "lights/light_set.h"
 #include "math/scalar.h"
@@ -50,7 +51,8 @@ static void putPoint(const ViewSampling* s, const vplHit* hit, vplVec3 from, vpl
     const float side = vplDot(hit->normal, from) > 0 ? -1.0f : 1.0f;
     // Documented lighting shades with normals as declared.
     const float shown = s->def->lighting == VPL_LIGHTING_DOCUMENTED ? 1.0f : side;
-    const vplRgb rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
+    const vplFootprint point = {.width = 0};
+    const vplRgb rho = vplGeometry_Reflectance(g, hit->triangle, hit->position, &point);
     const vplRay leave = vplGeometry_Leave(g, hit, vplScale(shown, hit->normal));
     vplSurface_Put(&b->surface, l, hit->position, vplScale(shown, shading));
     b->plane[0][l] = shown * hit->normal.x;

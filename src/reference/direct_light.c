@@ -260,7 +260,9 @@ vplRadiance vplConnectToParticle(vplPathState* path, const vplPathVertex* vertex
         return none;
     }
     // The vertex that a path from the camera would have there.
-    vplPathVertex there = vplPathVertex_Make(s, &particle->hit, between);
+    const vplFootprint footprint =
+        vplFootprintOfBounce(vplScale((float)(1 / distance), between), (float)distance);
+    vplPathVertex there = vplPathVertex_Make(s, &particle->hit, between, &footprint);
     double cosine = vplDot(between, vertex->shading) / distance,
            flat = vplDot(between, vertex->normal) / distance;
     double cosineThere = -vplDot(between, there.normal) / distance;

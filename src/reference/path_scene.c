@@ -22,6 +22,7 @@ vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const 
     s->right = vplNormalize(vplCross(s->forward, camera->up));
     s->up = vplCross(s->right, s->forward);
     s->scaleY = sine / cosine;
+    s->pixelWidth = (float)(2 * s->scaleY / def->height);
     s->scaleX = s->scaleY * def->width / def->height;
     TRY(vplEmission_Create(geometry, def->emitters, def->emitterCount, &s->emission));
     s->power = vplEmission_Power(s->emission);
@@ -63,14 +64,15 @@ vplRay vplPathScene_CameraRay(const vplPathScene* s, int x, int y, const float o
     return ray;
 }
 
-vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction)
+vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction,
+                                 const vplFootprint* footprint)
 {
     const vplGeometry* g = s->geometry;
     vplPathVertex v = {.hit = *hit,
                        .normal = hit->normal,
                        .shading = vplGeometry_ShadingNormal(g, hit),
                        .density = INFINITY};
-    v.rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
+    v.rho = vplGeometry_Reflectance(g, hit->triangle, hit->position, footprint);
     if (vplDot(direction, hit->normal) > 0) {
         v.normal = vplNegate(v.normal);
         v.shading = vplNegate(v.shading);

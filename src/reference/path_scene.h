@@ -5,6 +5,7 @@
 
 #include <vpl/geometry.h>
 
+#include "geometry/paint.h"
 #include "math/sobol.h"
 
 // Techniques for sampling the last steps of a path to a light. Where several can find the same path, multiple
@@ -41,6 +42,7 @@ typedef struct vplPathScene {
     vplEmission* emission; // owned
     vplPathDef def;
     vplSobol sobol;
+    float pixelWidth;            // at a depth of one metre, metres
     vplVec3 right, up, forward;  // of the camera
     double scaleX, scaleY;       // tangents of its half-angles
     double power, trianglePower; // W, of all sources and of the triangles among them
@@ -105,7 +107,9 @@ typedef struct vplPathVertex {
     double density; // per square metre, of reflections that lead here; infinite for what the camera sees
 } vplPathVertex;
 
-vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
+// `footprint` is where the cone around the ray in `direction`, of any length, meets the surface.
+vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction,
+                                 const vplFootprint* footprint);
 
 // The radiance that the surface emits against `direction`.
 vplRgb vplPathScene_EmissionAt(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);

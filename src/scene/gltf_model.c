@@ -3,7 +3,6 @@
 #include "scene/gltf.h"
 
 #include "scene/obj.h"
-#include "scene/texture.h"
 
 #include <stdio.h>
 
@@ -118,9 +117,7 @@ vplResult vplScene_ReadGltf(vplScene* scene, const char* path, bool whole, vplMo
         scene->materialCount = before.materialCount;
         scene->meshCount = before.meshCount;
         scene->emitterCount = before.emitterCount;
-        while (scene->textureCount > before.textureCount) {
-            vplTexture_Release(scene->textures[--scene->textureCount].decoded);
-        }
+        vplScene_DropTextures(scene, before.textureCount);
     }
     return result;
 }

@@ -110,6 +110,12 @@ static vplResult failAt(const vplJson* at, bool atKey, const char* message)
                    message);
 }
 
+void vplJson_FormatPlace(const vplJson* at, char* out, size_t size)
+{
+    const vplJsonPlace place = vplJson_Locate(at->file->text, at->file->size, &at->path, false);
+    snprintf(out, size, "%s:%d:%d", at->file->name, place.line, place.column);
+}
+
 vplResult vplJson_Fail(const vplJson* at, const char* format, ...)
 {
     char message[512];

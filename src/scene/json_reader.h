@@ -43,6 +43,9 @@ vplJson vplJson_Element(const vplJson* parent, int index);
 // Logs "file:line:column: path message" and returns VPL_PARSE_ERROR.
 vplResult vplJson_Fail(const vplJson* at, const char* format, ...) VPL_PRINTF(2, 3);
 
+// Writes "file:line:column" of the value.
+void vplJson_FormatPlace(const vplJson* at, char* out, size_t size);
+
 // Fails unless the value has this type.
 vplResult vplJson_RequireObject(const vplJson* at);
 vplResult vplJson_RequireArray(const vplJson* at);

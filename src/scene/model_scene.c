@@ -426,5 +426,5 @@ vplResult vplScene_LoadModelAlone(vplContext* context, const char* path, const v
     }
     vplScene* scene;
     TRY(vplScene_Create(context, &scene));
-    return vplArena_Deliver(scene->arena, fill(scene, path, def), scene, sceneOut);
+    return vplScene_Deliver(scene, fill(scene, path, def), sceneOut);
 }

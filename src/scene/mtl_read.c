@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads MTL files: Kd is the reflectance, Ke the emission. libvpl's surfaces have no other property.
+// Reads MTL files: Kd and map_Kd are the reflectance, Ke the emission, d and map_d the opacity. libvpl's surfaces have
+// no other property.
 #include "math/scalar.h"
 #include "scene/obj.h"
 #include "scene/obj_number.h"
@@ -14,6 +15,7 @@ typedef struct Mtl {
     vplTally early;    // statements before the first newmtl
     vplTally nameless; // newmtl without a name
     vplTally unread;   // colours that are no colours
+    vplTally opaque;   // d that is no opacity
     vplUnknownWords unknown;
 } Mtl;
 
@@ -27,7 +29,8 @@ vplResult vplObjMaterials_Get(vplObjMaterials* materials, vplWord name, int* out
                              sizeof *materials->list));
         TRY(vplNames_Add(&materials->names, name.start, length, out));
         const vplMaterialDef grey = vplDefaultMaterialDef();
-        materials->list[*out] = (vplObjMaterial){grey.diffuse, grey.emission, false, -1};
+        materials->list[*out] = (vplObjMaterial){
+            .diffuse = grey.diffuse, .emission = grey.emission, .opacity = 1, .sceneIndex = -1};
     }
     return VPL_SUCCESS;
 }
@@ -94,10 +97,36 @@ static void readColour(Mtl* m, vplWord line, vplWord keyword)
     }
 }
 
+// Reads d, which "-halo" may precede. Numbers out of range have no effect.
+static void readOpacity(Mtl* m, vplWord line)
+{
+    vplWord word;
+    float d;
+    vplNextWord(&line, &word);
+    if (vplWord_Is(word, "-halo")) {
+        vplNextWord(&line, &word);
+    }
+    if (!vplReadNumber(word.start, word.end, &d) || !(d >= 0 && d <= 1)) {
+        vplTally_Add(&m->opaque, word.start);
+    } else if (m->current >= 0) {
+        m->materials->list[m->current].opacity = d;
+    }
+}
+
+static vplResult readMap(Mtl* m, vplWord line, bool colour)
+{
+    if (m->current < 0) {
+        return VPL_SUCCESS;
+    }
+    vplObjMaterial* material = &m->materials->list[m->current];
+    return vplMtl_ReadMap(m->materials->names.index.arena, &m->text, line,
+                          colour ? &material->colourMap : &material->opacityMap);
+}
+
 static vplResult readLine(Mtl* m, vplWord line)
 {
-    // Constants of shading models with highlights and transparency, which nearly every file has.
-    static const char* const ignored[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "Tr", "d", "illum", NULL};
+    // Constants of shading models with highlights and refraction, which nearly every file has.
+    static const char* const ignored[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "Tr", "illum", NULL};
     vplWord keyword;
     vplNextWord(&line, &keyword);
     if (vplWord_Is(keyword, "newmtl")) {
@@ -107,6 +136,10 @@ static vplResult readLine(Mtl* m, vplWord line)
         vplTally_Add(&m->early, keyword.start);
     } else if (vplWord_Is(keyword, "Kd") || vplWord_Is(keyword, "Ke")) {
         readColour(m, line, keyword);
+    } else if (vplWord_Is(keyword, "map_Kd") || vplWord_Is(keyword, "map_d")) {
+        return readMap(m, line, vplWord_Is(keyword, "map_Kd"));
+    } else if (vplWord_Is(keyword, "d")) {
+        readOpacity(m, line);
     } else if (!vplWord_IsAmong(keyword, ignored)) {
         vplText_WarnOnce(&m->text, &m->unknown, keyword);
     }
@@ -128,6 +161,7 @@ static vplResult readLines(Mtl* m)
     vplText_WarnTally(&m->text, &m->nameless, "this material has no name and is left out", "materials");
     vplText_WarnTally(&m->text, &m->unread,
                       "this line has no effect: it has neither one nor three numbers in [0, 1e+15]", "lines");
+    vplText_WarnTally(&m->text, &m->opaque, "this opacity has no effect: it is no number in [0, 1]", "lines");
     return VPL_SUCCESS;
 }
 

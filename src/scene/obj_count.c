@@ -90,7 +90,7 @@ static vplResult noteMaterial(vplObj* obj, vplWord line)
 
 static vplResult countLine(vplObj* obj, vplWord line)
 {
-    static const char* const ignored[] = {"vt", "g", "o", NULL}; // irrelevant to a mesh
+    static const char* const ignored[] = {"g", "o", NULL}; // irrelevant to a mesh
     vplWord keyword;
     vplNextWord(&line, &keyword);
     if (vplWord_Is(keyword, "v")) {
@@ -99,6 +99,8 @@ static vplResult countLine(vplObj* obj, vplWord line)
         return countFace(obj, line, keyword);
     } else if (vplWord_Is(keyword, "vn")) {
         obj->normalCount++;
+    } else if (vplWord_Is(keyword, "vt")) {
+        obj->texcoordCount++;
     } else if (vplWord_Is(keyword, "usemtl")) {
         return noteMaterial(obj, line);
     } else if (vplWord_Is(keyword, "s")) {
@@ -124,6 +126,9 @@ vplResult vplObj_Count(vplObj* obj)
     obj->smooths = obj->smooths && !obj->hasNormals;
     obj->hasNormals = obj->hasNormals || obj->smooths;
     obj->group = 0;
+    for (uint32_t i = 0; obj->texcoordCount > 0 && i < obj->materials.names.index.count; i++) {
+        obj->hasTexcoords = obj->hasTexcoords || vplObj_HasPicture(obj, (int)i);
+    }
     if (obj->pointCount > VPL_MAX_TRIANGLES || obj->triangleCount > VPL_MAX_TRIANGLES) {
         return vplFail(obj->text.context, VPL_LIMIT,
                        "%s: %lld points (v) and %lld triangles, at most %d are allowed", obj->text.file,

@@ -9,11 +9,11 @@
 typedef struct Sweep {
     vplObj* obj;
     vplObjMesh* mesh;
-    int64_t points, normals; // counts of v and vn so far: negative indices count back from them
+    int64_t points, normals,
+        texcoords; // counts of v, vn and vt so far: negative indices count back from them
     int material;
     vplEarClipper polygon;
-    uint32_t cornerPoints[VPL_MAX_CORNERS];
-    int64_t cornerNormals[VPL_MAX_CORNERS]; // -1: none
+    vplObjIndices corners[VPL_MAX_CORNERS];
     vplVec3 positions[VPL_MAX_CORNERS];
     vplTally crossing; // faces whose outline crosses itself
 } Sweep;
@@ -57,21 +57,39 @@ static vplResult readIndex(const Sweep* s, vplWord corner, vplWord* word, Range 
                             (long long)range.total, (long long)range.before);
 }
 
+// Reads an index of a texture coordinate. One that refers to none counts as none.
+static bool readTexcoord(Sweep* s, vplWord* word, vplWord* number, int64_t* out)
+{
+    int64_t index = 0;
+    const char* start = word->start;
+    if (!readInteger(word, number, &index)) {
+        return false;
+    }
+    const int64_t place = index > 0 ? index - 1 : s->texcoords + index;
+    if (index != 0 && place >= 0 && place < s->obj->texcoordCount) {
+        *out = place;
+    } else {
+        vplTally_Add(&s->obj->unplaced, start);
+    }
+    return true;
+}
+
 // Reads v, v/vt, v//vn or v/vt/vn.
 static vplResult readCorner(Sweep* s, vplWord corner, int i)
 {
     const vplObj* obj = s->obj;
     vplWord word = corner, number;
-    int64_t point = 0, ignored;
-    s->cornerNormals[i] = -1;
+    int64_t point = 0;
+    vplObjIndices* to = &s->corners[i];
+    *to = (vplObjIndices){0, -1, -1};
     TRY(readIndex(s, corner, &word, (Range){"point (v)", s->points, obj->pointCount}, &point));
-    s->cornerPoints[i] = obj->pointOf[point];
+    to->point = obj->pointOf[point];
     if (word.start == word.end) {
         return VPL_SUCCESS;
     }
     word.start++;
     bool noTexture = word.start < word.end && *word.start == '/';
-    if (!noTexture && !readInteger(&word, &number, &ignored)) { // any index will do: it is not used
+    if (!noTexture && !readTexcoord(s, &word, &number, &to->texcoord)) {
         return vplText_FailWord(&obj->text, number.start < number.end ? number : corner,
                                 "an index of a texture coordinate (vt)");
     }
@@ -79,23 +97,21 @@ static vplResult readCorner(Sweep* s, vplWord corner, int i)
         return VPL_SUCCESS;
     }
     word.start++;
-    TRY(readIndex(s, corner, &word, (Range){"normal (vn)", s->normals, obj->normalCount},
-                  &s->cornerNormals[i]));
+    TRY(readIndex(s, corner, &word, (Range){"normal (vn)", s->normals, obj->normalCount}, &to->normal));
     return word.start < word.end ? vplText_FailWord(&obj->text, word, "the end of the corner") : VPL_SUCCESS;
 }
 
 static vplResult addTriangle(Sweep* s, int a, int b, int c)
 {
-    const uint32_t points[3] = {s->cornerPoints[a], s->cornerPoints[b], s->cornerPoints[c]};
-    const int64_t normals[3] = {s->cornerNormals[a], s->cornerNormals[b], s->cornerNormals[c]};
-    return vplObjMesh_AddTriangle(s->obj, s->mesh, points, normals, s->material);
+    const vplObjIndices corners[3] = {s->corners[a], s->corners[b], s->corners[c]};
+    return vplObjMesh_AddTriangle(s->obj, s->mesh, corners, s->material);
 }
 
 static vplResult addPolygon(Sweep* s, int corners, const char* face)
 {
     const int64_t emptyBefore = s->mesh->emptyCount;
     for (int i = 0; i < corners; i++) {
-        s->positions[i] = s->obj->points[s->cornerPoints[i]];
+        s->positions[i] = s->obj->points[s->corners[i].point];
     }
     vplEarClipper_Triangulate(&s->polygon, s->positions, corners);
     for (int i = 0; i < s->polygon.triangleCount; i++) {
@@ -139,6 +155,7 @@ static vplResult readLine(Sweep* s, vplWord line)
     }
     s->points += vplWord_Is(keyword, "v");
     s->normals += vplWord_Is(keyword, "vn");
+    s->texcoords += vplWord_Is(keyword, "vt");
     return VPL_SUCCESS;
 }
 
@@ -152,6 +169,10 @@ static vplResult readLines(Sweep* s)
     }
     vplText_WarnTally(&s->obj->text, &s->crossing,
                       "the outline of this face crosses itself; its triangles may overlap", "faces");
+    if (s->obj->hasTexcoords) {
+        vplText_WarnTally(&s->obj->text, &s->obj->unplaced, "there is no such texture coordinate: 0 is taken",
+                          "places");
+    }
     return s->obj->smooths ? vplObjMesh_Smooth(s->obj, s->mesh) : VPL_SUCCESS;
 }
 
@@ -170,7 +191,11 @@ vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
         mesh->groups = vplArena_Alloc(obj->scratch, triangles, sizeof *mesh->groups);
         TRY(vplArena_Check(obj->scratch));
     }
-    if (!obj->hasNormals) {
+    if (obj->smooths && obj->hasTexcoords) {
+        mesh->waiting = vplArena_Alloc(obj->scratch, triangles, 3 * sizeof *mesh->waiting);
+        TRY(vplArena_Check(obj->scratch));
+    }
+    if (!vplObj_HasCorners(obj)) {
         mesh->vertexOf = vplArena_Alloc(obj->scratch, obj->differentPoints, sizeof *mesh->vertexOf);
         TRY(vplArena_Check(obj->scratch));
         memset(mesh->vertexOf, 0xFF, obj->differentPoints * sizeof *mesh->vertexOf); // VPL_NO_ENTRY

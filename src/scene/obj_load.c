@@ -3,6 +3,7 @@
 // holds the text and one copy of the mesh.
 #include "scene/obj.h"
 #include "base/file.h"
+#include "scene/texture_load.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -52,6 +53,34 @@ char* vplScene_MakePrefix(const vplScene* scene, const char* path, vplArena* scr
     return prefix;
 }
 
+static vplResult addMap(vplScene* scene, const vplObjMap* map, float otherwise, int* indexOut)
+{
+    const vplTextureWrap wrap = map->clamp ? VPL_WRAP_CLAMP : VPL_WRAP_REPEAT;
+    const vplTextureFile file = {
+        .path = map->path, .where = map->where, .wrapU = wrap, .wrapV = wrap, .otherwise = otherwise};
+    return vplScene_LoadTexture(scene, &file, indexOut);
+}
+
+// Adds the pictures of a material. One that gives both colour and opacity has the opacity in its alpha. A material has
+// one placing: that of its colour, if there are two.
+static vplResult addMaps(vplScene* scene, const vplObjMaterial* material, vplMaterialDef* def)
+{
+    const vplObjMap *colour = &material->colourMap, *opacity = &material->opacityMap;
+    const vplObjMap* placed = colour->path != NULL ? colour : opacity;
+    if (placed->path == NULL) {
+        return VPL_SUCCESS;
+    }
+    memcpy(def->textureScale, placed->scale, sizeof placed->scale);
+    memcpy(def->textureOffset, placed->offset, sizeof placed->offset);
+    if (colour->path != NULL) {
+        TRY(addMap(scene, colour, 0.5f, &def->texture));
+    }
+    def->alphaFromTexture =
+        colour->path != NULL && opacity->path != NULL && strcmp(colour->path, opacity->path) == 0;
+    return opacity->path != NULL && !def->alphaFromTexture ? addMap(scene, opacity, 1, &def->alphaTexture)
+                                                           : VPL_SUCCESS;
+}
+
 // Adds one material to the scene, its name in `arena`.
 static vplResult addMaterial(vplScene* scene, vplArena* arena, const char* prefix, const char* name,
                              vplObjMaterial* material)
@@ -66,6 +95,8 @@ static vplResult addMaterial(vplScene* scene, vplArena* arena, const char* prefi
     def.name = whole;
     def.diffuse = material->diffuse;
     def.emission = material->emission;
+    def.opacity = material->opacity;
+    TRY(addMaps(scene, material, &def));
     return vplScene_AdoptMaterial(scene, &def, &material->sceneIndex);
 }
 
@@ -96,10 +127,10 @@ static vplResult addMaterials(vplScene* scene, const vplObj* obj, vplObjMesh* me
 static vplVec3* placeVertices(const vplObj* obj, const vplObjMesh* mesh)
 {
     vplVec3* positions = vplArena_Alloc(mesh->arena, mesh->vertexCount, sizeof *positions);
-    for (uint32_t i = 0; positions != NULL && obj->hasNormals && i < mesh->vertexCount; i++) {
+    for (uint32_t i = 0; positions != NULL && vplObj_HasCorners(obj) && i < mesh->vertexCount; i++) {
         positions[i] = obj->points[mesh->cornerPoint[i]];
     }
-    for (uint32_t i = 0; positions != NULL && !obj->hasNormals && i < obj->differentPoints; i++) {
+    for (uint32_t i = 0; positions != NULL && !vplObj_HasCorners(obj) && i < obj->differentPoints; i++) {
         if (mesh->vertexOf[i] != VPL_NO_ENTRY) {
             positions[mesh->vertexOf[i]] = obj->points[i];
         }
@@ -127,8 +158,17 @@ static vplResult addMesh(vplScene* scene, vplObj* obj, vplObjMesh* mesh, int* in
     def.triangleCount = (int)mesh->triangleCount;
     def.positions = placeVertices(obj, mesh);
     def.indices = shrink(mesh->arena, mesh->indices, capacity, triangles, 3 * sizeof *mesh->indices);
-    def.normals = shrink(mesh->arena, mesh->cornerNormal, mesh->normalCapacity, mesh->vertexCount,
-                         sizeof *mesh->cornerNormal);
+    if (obj->hasNormals) {
+        def.normals = shrink(mesh->arena, mesh->cornerNormal, mesh->normalCapacity, mesh->vertexCount,
+                             sizeof *mesh->cornerNormal);
+    } else {
+        vplArena_Free(mesh->arena, mesh->cornerNormal);
+    }
+    if (obj->hasTexcoords) {
+        def.texcoords = &((vplTexcoord*)shrink(mesh->arena, mesh->cornerTexcoord, mesh->texcoordCapacity,
+                                               mesh->vertexCount, sizeof *mesh->cornerTexcoord))
+                             ->u;
+    }
     mesh->materials = shrink(mesh->arena, mesh->materials, capacity, triangles, sizeof *mesh->materials);
     def.materials = mesh->materials;
     TRY(vplArena_Check(mesh->arena));
@@ -180,10 +220,11 @@ vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut)
                   .materials = {.names = {.index = {.arena = scratch}}},
                   .libraries = {.index = {.arena = scratch}}};
     vplObjMesh mesh = {.arena = vplArena_Create(scene->context)};
-    const int materialCount = scene->materialCount;
+    const int materialCount = scene->materialCount, textureCount = scene->textureCount;
     const vplResult result = loadObj(scene, &obj, path, &mesh, indexOut);
     if (result != VPL_SUCCESS) {
         scene->materialCount = materialCount; // drops the new ones; their names are in the mesh's arena
+        vplScene_DropTextures(scene, textureCount);
     }
     vplArena_Destroy(mesh.arena);
     vplArena_Destroy(scratch);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The second sweep over an OBJ file: points and normals. Points with equal coordinates are merged.
+// The second sweep over an OBJ file: points, normals and texture coordinates. Points with equal coordinates are merged.
 #include "scene/obj.h"
 #include "math/vec.h"
+#include "scene/obj_number.h"
 
 #include <float.h>
 #include <string.h>
@@ -44,12 +45,30 @@ static vplResult weld(vplObj* obj, vplHashIndex* index, vplVec3 p, uint32_t* out
     return i == VPL_NO_ENTRY ? vplHashIndex_Add(index, hash) : VPL_SUCCESS;
 }
 
+// Reads u and v, and leaves 0 where there is no number: surfaces matter more than what is on them.
+static void readTexcoord(vplObj* obj, vplWord line, vplTexcoord* out)
+{
+    float* const parts[2] = {&out->u, &out->v};
+    *out = (vplTexcoord){0, 0};
+    for (int i = 0; i < 2; i++) {
+        vplWord word;
+        float x;
+        const bool any = vplNextWord(&line, &word);
+        if (any && vplReadNumber(word.start, word.end, &x) && x >= -VPL_MAX_MAGNITUDE &&
+            x <= VPL_MAX_MAGNITUDE) {
+            *parts[i] = x;
+        } else if (any || i == 0) { // v may be left out
+            vplTally_Add(&obj->unplaced, line.start);
+        }
+    }
+}
+
 static vplResult readLines(vplObj* obj, vplHashIndex* index)
 {
     const char* at = NULL;
     vplWord line, keyword;
     vplVec3 v;
-    size_t point = 0, normal = 0;
+    size_t point = 0, normal = 0, texcoord = 0;
     while (vplText_NextLine(&obj->text, &at, &line)) {
         TRY(vplText_Ask(&obj->text, line, at));
         if (line.start[0] != 'v') { // most lines of most files are faces
@@ -64,6 +83,8 @@ static vplResult readLines(vplObj* obj, vplHashIndex* index)
             TRY(readThree(obj, &line, "a normal's component", 3.4e38f, &v));
             TRY(vplText_RequireEnd(&obj->text, line));
             obj->normals[normal++] = vplNormalize(v);
+        } else if (obj->hasTexcoords && vplWord_Is(keyword, "vt")) {
+            readTexcoord(obj, line, &obj->texcoords[texcoord++]);
         }
     }
     obj->differentPoints = index->count;
@@ -76,6 +97,9 @@ vplResult vplObj_ReadPoints(vplObj* obj)
     obj->points = vplArena_Alloc(obj->scratch, (size_t)obj->pointCount, sizeof *obj->points);
     obj->pointOf = vplArena_Alloc(obj->scratch, (size_t)obj->pointCount, sizeof *obj->pointOf);
     obj->normals = vplArena_Alloc(obj->scratch, (size_t)obj->normalCount, sizeof *obj->normals);
+    if (obj->hasTexcoords) {
+        obj->texcoords = vplArena_Alloc(obj->scratch, (size_t)obj->texcoordCount, sizeof *obj->texcoords);
+    }
     TRY(vplArena_Check(obj->scratch));
     TRY(vplHashIndex_Reserve(&index, (size_t)obj->pointCount));
     TRY(readLines(obj, &index));

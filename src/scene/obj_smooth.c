@@ -110,7 +110,9 @@ static vplResult placeCorners(Smoothing* s, int64_t triangle)
                 normal = vplVec((float)(n[0] / length), (float)(n[1] / length), (float)(n[2] / length));
             }
         }
-        TRY(vplObjMesh_FindVertex(s->mesh, *index, normal, index));
+        const vplTexcoord texcoord =
+            s->mesh->waiting != NULL ? s->mesh->waiting[3 * triangle + k] : (vplTexcoord){0, 0};
+        TRY(vplObjMesh_FindVertex(s->obj, s->mesh, &(vplObjCorner){*index, normal, texcoord}, index));
     }
     return VPL_SUCCESS;
 }

@@ -243,6 +243,13 @@ static void logAt(const vplText* text, const char* at, vplLogLevel level, const 
     vplLog(text->context, level, "%s:%lld:%lld: %s", text->file, line, column, message);
 }
 
+void vplText_Locate(const vplText* text, const char* at, char* out, size_t size)
+{
+    long long line, column;
+    locate(text, at, &line, &column);
+    snprintf(out, size, "%s:%lld:%lld", text->file, line, column);
+}
+
 vplResult vplText_FailAt(const vplText* text, const char* at, const char* format, ...)
 {
     va_list arguments;

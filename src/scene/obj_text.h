@@ -52,6 +52,9 @@ vplResult vplText_FailWord(const vplText* text, vplWord word, const char* format
 vplResult vplText_FailAt(const vplText* text, const char* at, const char* format, ...) VPL_PRINTF(3, 4);
 void vplText_WarnAt(const vplText* text, const char* at, const char* format, ...) VPL_PRINTF(3, 4);
 
+// Writes "file:line:column" of a place in the text.
+void vplText_Locate(const vplText* text, const char* at, char* out, size_t size);
+
 // Reads the next word as a number in [low, high]; `what` completes "expected ...".
 vplResult vplText_Number(const vplText* text, vplWord* line, const char* what, float low, float high,
                          float* out);

@@ -72,10 +72,27 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
 
 void vplScene_Destroy(vplScene* scene)
 {
-    for (int i = 0; scene != NULL && i < scene->textureCount; i++) {
-        vplTexture_Release(scene->textures[i].decoded);
+    if (scene != NULL) {
+        vplScene_DropTextures(scene, 0);
+        vplArena_Destroy(scene->arena);
     }
-    vplArena_Destroy(scene != NULL ? scene->arena : NULL);
+}
+
+void vplScene_DropTextures(vplScene* scene, int count)
+{
+    while (scene->textureCount > count) {
+        vplTexture_Release(scene->textures[--scene->textureCount].decoded);
+    }
+}
+
+vplResult vplScene_Deliver(vplScene* scene, vplResult result, vplScene** sceneOut)
+{
+    if (result == VPL_SUCCESS) {
+        *sceneOut = scene;
+    } else {
+        vplScene_Destroy(scene);
+    }
+    return result;
 }
 
 vplResult vplScene_ReportFault(const vplScene* scene, const char* subject, vplFault fault)

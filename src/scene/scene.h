@@ -26,6 +26,7 @@ typedef struct vplEmitter {
 typedef struct vplSceneTexture {
     vplTextureDef def; // without texels
     struct vplTexture* decoded;
+    float otherwise; // see vplTextureFile
 } vplSceneTexture;
 
 struct vplScene {
@@ -49,6 +50,12 @@ vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* 
 
 // Adds a material without checking it or copying its name.
 vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut);
+
+// Releases all textures but the first `count`.
+void vplScene_DropTextures(vplScene* scene, int count);
+
+// Ends the creation of a scene: on success stores it in *sceneOut, else destroys it. Returns `result`.
+vplResult vplScene_Deliver(vplScene* scene, vplResult result, vplScene** sceneOut);
 
 // Reads a model file as a whole scene, with a camera, a ground and a light of our own.
 vplResult vplScene_LoadModelAlone(vplContext* context, const char* path, const vplModelSceneDef* def,

@@ -15,6 +15,8 @@ static const char* keyOf(const vplJson* object, const char* field)
                                            {"innerAngle", "inner_angle"},
                                            {"outerAngle", "outer_angle"},
                                            {"transform", "matrix"},
+                                           {"alphaCutoff", "alpha_cutoff"},
+                                           {"alphaFromTexture", "alpha_from_texture"},
                                            {"intensity", "irradiance"}}; // of a directional emitter
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         if (strcmp(field, pairs[i][0]) == 0 && json_object_get(object->value, pairs[i][1]) != NULL) {
@@ -69,7 +71,9 @@ static vplResult readCamera(vplSceneLoader* l, const vplJson* camera)
 
 static vplResult readMaterials(vplSceneLoader* l, const vplJson* root)
 {
-    static const char* const keys[] = {"diffuse", "emission", NULL};
+    static const char* const keys[] = {
+        "diffuse", "emission",     "texture", "alpha_texture", "alpha_from_texture",
+        "opacity", "alpha_cutoff", NULL};
     const vplJson materials = vplJson_Member(root, "materials");
     if (materials.value == NULL) {
         return VPL_SUCCESS;
@@ -85,6 +89,7 @@ static vplResult readMaterials(vplSceneLoader* l, const vplJson* root)
         TRY(vplJson_CheckKeys(&material, keys));
         TRY(vplJson_ReadFloats(&material, "diffuse", 3, &def.diffuse));
         TRY(vplJson_ReadFloats(&material, "emission", 3, &def.emission));
+        TRY(vplSceneLoader_ReadTextures(l, &material, &def));
         TRY(vplJson_ReportFault(&material, vplCheckMaterial(&def, l->scene->textureCount)));
         TRY(vplScene_AddMaterial(l->scene, &def, NULL));
     }
@@ -205,7 +210,7 @@ static vplResult loadJson(vplContext* context, const char* path, vplScene** scen
     vplSceneLoader loader = {.scene = scene, .scratch = scratch, .modelFiles = {.index = {.arena = scratch}}};
     const vplResult result = readFile(&loader, path);
     vplArena_Destroy(scratch);
-    return vplArena_Deliver(scene->arena, result, scene, sceneOut);
+    return vplScene_Deliver(scene, result, sceneOut);
 }
 
 vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplModelSceneDef* def,

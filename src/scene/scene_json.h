@@ -18,6 +18,9 @@ typedef struct vplSceneLoader {
     size_t modelCapacity;
 } vplSceneLoader;
 
+// Reads what a material says of textures and opacity. (scene_json_textures.c)
+vplResult vplSceneLoader_ReadTextures(vplSceneLoader* l, const vplJson* material, vplMaterialDef* def);
+
 // Finds the origin of a scene file, as vplScene_SetOrigin describes it.
 void vplFindOrigin(json_t* root, double originOut[3]);
 

@@ -103,7 +103,7 @@ static void addBlock(const vplShading* s, int first, int count, vplClampLoss* su
         if (points.triangle[l] < 0) {
             continue;
         }
-        const vplRgb rho = g->materials[g->triangleMaterials[points.triangle[l]]].diffuse;
+        const vplRgb rho = vplLitPoint_Reflectance(&at[l], g);
         float left[3];
         vplReceiveDrawnLights(s, &all, &at[l], left, &rays);
         const float taken = rho.r * lost[0][l] + rho.g * lost[1][l] + rho.b * lost[2][l];

@@ -30,11 +30,6 @@ typedef struct Walk {
     uint32_t active;               // bit per lane
 } Walk;
 
-static inline vplRgb diffuseOf(const vplGeometry* g, int triangle)
-{
-    return g->materials[g->triangleMaterials[triangle]].diffuse;
-}
-
 static float shareTaken(float distance, float t)
 {
     const float nearer = t / distance;
@@ -126,7 +121,7 @@ static void addReflection(const vplShading* s, Walk* w, double sums[3][VPL_LANES
     vplDirectIrradiance(s, &compensator->direct, &points, direct, rays);
     for (uint32_t left = w->active; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
-        const vplRgb rho = vplRgbScale(def->reflection, diffuseOf(s->geometry, w->at[l].hit.triangle));
+        const vplRgb rho = vplRgbScale(def->reflection, vplLitPoint_Reflectance(&w->at[l], s->geometry));
         const float factor[3] = {rho.r, rho.g, rho.b};
         float indirect[3];
         vplReceiveDrawnLights(s, &all, &w->at[l], indirect, rays);
@@ -143,7 +138,7 @@ static void endByChance(const vplShading* s, Walk* w)
     const vplCompensator* compensator = s->compensation;
     for (uint32_t left = w->active; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
-        const vplRgb rho = diffuseOf(s->geometry, w->at[l].hit.triangle);
+        const vplRgb rho = vplLitPoint_Reflectance(&w->at[l], s->geometry);
         const float most =
             fmaxf(rho.r, fmaxf(rho.g, rho.b)) * compensator->def->reflection * w->clampedShare[l];
         float u[VPL_SOBOL_DIMENSIONS];

@@ -26,6 +26,9 @@ typedef struct vplLitPoint {
 // Turns both normals of the point's hit towards where `direction` came from.
 void vplLitPoint_Face(vplLitPoint* point, const vplGeometry* g, vplVec3 direction);
 
+// The reflectance of the surface that a ray has met there.
+vplRgb vplLitPoint_Reflectance(const vplLitPoint* point, const vplGeometry* g);
+
 // Finds the point shown at pixel coordinates (x, y); false where there is none.
 bool vplFindVisiblePoint(const vplGeometry* g, const vplView* view, double x, double y, vplLitPoint* point);
 

@@ -72,9 +72,9 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
 
 // The albedo of a surface includes its emission, because a denoiser reads albedo as the part of a pixel's
 // colour that does not depend on the light around.
-static vplRgb showAlbedo(const vplGeometry* g, int triangle, const float emission[3])
+static vplRgb showAlbedo(const vplShading* s, int triangle, vplVec3 point, const float emission[3])
 {
-    const vplRgb rho = g->materials[g->triangleMaterials[triangle]].diffuse;
+    const vplRgb rho = vplReflectanceSeen(s->geometry, s->view, triangle, point);
     return (vplRgb){vplMinf(rho.r + emission[0], 1), vplMinf(rho.g + emission[1], 1),
                     vplMinf(rho.b + emission[2], 1)};
 }
@@ -88,7 +88,8 @@ static vplRgb showPoint(const vplShading* s, const vplBlock* b, int l, float fac
     case VPL_OUTPUT_NORMALS:
         return (vplRgb){b->surface.nx[l], b->surface.ny[l], b->surface.nz[l]};
     case VPL_OUTPUT_ALBEDO:
-        return showAlbedo(s->geometry, triangle, vplFacetCache_Get(s, triangle, cache)->reflector.emission);
+        return showAlbedo(s, triangle, vplSurface_At(&b->surface, l),
+                          vplFacetCache_Get(s, triangle, cache)->reflector.emission);
     case VPL_OUTPUT_OBJECT:
         grey = (float)(s->geometry->owners[triangle] + 1);
         break;

@@ -2,6 +2,7 @@
 // The light of some randomly drawn virtual lights at a point that a ray has hit: sixteen lights at once.
 #include "base/rng.h"
 #include "geometry/bvh.h"
+#include "geometry/paint.h"
 #include "shading/compensation.h"
 
 enum { DRAW_STREAM = 0x636f6d70 }; // of random numbers
@@ -12,6 +13,12 @@ void vplLitPoint_Face(vplLitPoint* p, const vplGeometry* g, vplVec3 direction)
     const vplVec3 shading = vplGeometry_ShadingNormal(g, &p->hit);
     p->plane = behind ? vplNegate(p->hit.normal) : p->hit.normal;
     p->shading = behind ? vplNegate(shading) : shading;
+}
+
+vplRgb vplLitPoint_Reflectance(const vplLitPoint* p, const vplGeometry* g)
+{
+    const vplFootprint footprint = vplUpright(g, p->hit.triangle, VPL_BOUNCE_SPREAD * p->hit.t);
+    return vplGeometry_Reflectance(g, p->hit.triangle, p->hit.position, &footprint);
 }
 
 // Draws one light from each of `drawn` equal parts of the list. Equal steps through the list would follow the

@@ -16,20 +16,12 @@
 
 float vplEdgeDistance(const vplShading* s, int triangle, const vplFacet* facet, vplVec3 sight)
 {
-    const vplTriangleCorners t = vplGeometry_Corners(s->geometry, triangle);
-    float least = INFINITY, most = 0;
-    for (int i = 0; i < 3; i++) {
-        const float w = vplDot(s->view->forward, vplSub(t.corner[i], s->view->eye));
-        least = vplMinf(least, w);
-        most = vplMaxf(most, w);
-    }
-    const float w = facet->offset / vplDot(facet->normal, sight);
-    return vplMinf(vplMaxf(w, vplMaxf(least, (float)s->view->near)), most); // NaN becomes the least
+    return vplDistanceOf(s->geometry, s->view, triangle, facet->normal, facet->offset, sight);
 }
 
 static bool sameReflector(const vplReflector* a, const vplReflector* b)
 {
-    bool same = true;
+    bool same = a->texture == b->texture;
     for (int c = 0; c < 3; c++) {
         same &= a->factor[c] == b->factor[c] && a->emission[c] == b->emission[c];
     }
@@ -140,9 +132,11 @@ void vplEdgeQueue_Flush(vplEdgeQueue* q)
     for (int l = 0; l < q->count; l++) {
         const vplReflector* r = &vplFacetCache_Get(s, b->points.triangle[l], q->cache)->reflector;
         float* pixel = vplPixelOf(s, q->x[l], q->y[l]);
+        double factor[3];
+        vplFactorAtPoint(s, r, b->points.triangle[l], vplSurface_At(&b->surface, l), factor);
         for (int c = 0; c < 3; c++) {
             const double emission = q->direct && q->glows[l] ? r->emission[c] : 0;
-            pixel[c] += q->share[l] * (float)(emission + r->factor[c] * b->sums[c][l]);
+            pixel[c] += q->share[l] * (float)(emission + factor[c] * b->sums[c][l]);
         }
     }
     q->count = 0;

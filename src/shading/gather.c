@@ -146,8 +146,7 @@ static void reflectDirect(const vplShading* s, Walk* w, double sums[3][VPL_LANES
     vplDirectIrradiance(s, &one, &points, direct, rays);
     for (uint32_t left = w->active; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
-        const vplRgb rho =
-            s->geometry->materials[s->geometry->triangleMaterials[w->at[l].hit.triangle]].diffuse;
+        const vplRgb rho = vplLitPoint_Reflectance(&w->at[l], s->geometry);
         const float factor[3] = {rho.r, rho.g, rho.b};
         for (int c = 0; c < 3; c++) {
             w->weight[c][l] *= factor[c];

@@ -4,6 +4,7 @@
 #define VPL_SHADING_GBUFFER_H
 
 #include "math/vec.h"
+#include "lights/light_set.h"
 #include "shading/resolve.h"
 
 #include <math.h>
@@ -228,7 +229,11 @@ static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int blo
         vplWriteSums(s, tile, block, b->sums);
         return;
     }
-    if (b->same) {
+    if (s->geometry->paint != NULL) {
+        vplResolvePainted(s, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
+                          tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, b->points.triangle, b->sums,
+                          cache, radiance);
+    } else if (b->same) {
         vplResolveSame(&b->reflector, b->sums, radiance);
     } else {
         vplResolveMixed(s, b->points.triangle, b->sums, cache, radiance);

@@ -113,8 +113,10 @@ static inline void filterEdges(const vplShading* s, vplFilterScratch* scratch, c
         }
         const vplReflector* r = &vplFacetCache_Get(s, e->surface.triangle, &scratch->facets)->reflector;
         float* pixel = s->image->pixels + 3 * ((size_t)e->y * (size_t)s->image->width + e->x);
+        double factor[3];
+        vplFactorInPixel(s, r, e->surface.triangle, e->x, e->y, factor);
         for (int c = 0; c < 3; c++) {
-            pixel[c] += e->surface.share * (float)r->factor[c] * mean[c];
+            pixel[c] += e->surface.share * (float)factor[c] * mean[c];
         }
     }
     vplEdgeQueue_Flush(&lone);

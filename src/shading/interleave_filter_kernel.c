@@ -147,6 +147,20 @@ static void reflect(const vplShading* s, const int32_t triangles[VPL_LANES], vpl
     }
 }
 
+// The same where triangles may have textures or colours of vertices, for pixels from (x, y) on.
+static void reflectPainted(const vplShading* s, const int32_t triangles[VPL_LANES], int x, int y,
+                           float mean[3][VPL_LANES])
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        const vplRgb rho = vplReflectanceInPixel(s->geometry, s->view, triangles[l] - 1, x + l, y);
+        double factor[3];
+        vplFactorOf(rho, factor);
+        for (int c = 0; c < 3; c++) {
+            mean[c][l] *= (float)factor[c];
+        }
+    }
+}
+
 static void addToPixels(float values[3][VPL_LANES], float* pixels, int count)
 {
     _Alignas(64) float row[3 * VPL_LANES];
@@ -189,7 +203,9 @@ static void filterRun(const vplShading* s, vplFilterScratch* scratch, const Part
     } else {
         meanOfMixed(s->view, scratch, side, row, x, mean);
     }
-    if (!s->irradiance) {
+    if (!s->irradiance && s->geometry->paint != NULL) {
+        reflectPainted(s, triangles, part->x + x, part->y + row, mean);
+    } else if (!s->irradiance) {
         reflect(s, triangles, &scratch->facets, mean);
     }
     const size_t pixel = (size_t)(part->y + row) * (size_t)s->image->width + (size_t)(part->x + x);

@@ -3,7 +3,7 @@
 #ifndef VPL_SHADING_RESOLVE_H
 #define VPL_SHADING_RESOLVE_H
 
-#include "shading/facet_cache.h"
+#include "shading/pixel_paint.h"
 
 // Stores one triangle in all lanes, as vplReadTriangles reads it.
 static inline void vplStoreTriangle(int triangle, vplFragments* f)
@@ -80,14 +80,32 @@ static inline void vplResolveMixed(const vplShading* s, const int triangles[VPL_
                                    double sums[3][VPL_LANES], vplFacetCache* cache,
                                    float radiance[3][VPL_LANES])
 {
-    vplReflector r = {{0}, {0}};
+    vplReflector r = {{0}, {0}, -1};
     for (int l = 0, last = -1; l < VPL_LANES; l++) {
         if (triangles[l] != last) {
             last = triangles[l];
-            r = last < 0 ? (vplReflector){{0}, {0}} : vplFacetCache_Get(s, last, cache)->reflector;
+            r = last < 0 ? (vplReflector){{0}, {0}, -1} : vplFacetCache_Get(s, last, cache)->reflector;
         }
         for (int c = 0; c < 3; c++) {
             radiance[c][l] = (float)(r.emission[c] + r.factor[c] * sums[c][l]);
+        }
+    }
+}
+
+// The same where triangles may have textures or colours of vertices. The block's first pixel is (x, y).
+static inline void vplResolvePainted(const vplShading* s, int x, int y, const int triangles[VPL_LANES],
+                                     double sums[3][VPL_LANES], vplFacetCache* cache,
+                                     float radiance[3][VPL_LANES])
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        if (triangles[l] < 0) {
+            continue;
+        }
+        const vplReflector* r = &vplFacetCache_Get(s, triangles[l], cache)->reflector;
+        double factor[3];
+        vplFactorInPixel(s, r, triangles[l], x + l % VPL_BLOCK_SIDE, y + l / VPL_BLOCK_SIDE, factor);
+        for (int c = 0; c < 3; c++) {
+            radiance[c][l] = (float)(r->emission[c] + factor[c] * sums[c][l]);
         }
     }
 }

@@ -129,8 +129,10 @@ static void flush(Rims* r)
             list(r, cell);
         } else if (r->kind == SAMPLE) {
             const vplReflector* to = &vplFacetCache_Get(s, q->block.points.triangle[l], q->cache)->reflector;
+            double factor[3];
+            vplFactorAtPoint(s, to, q->block.points.triangle[l], vplSurface_At(&q->block.surface, l), factor);
             for (int c = 0; c < 3; c++) {
-                vplPixelOf(s, q->x[l], q->y[l])[c] += share * (float)(to->factor[c] * (double)part[c][l]);
+                vplPixelOf(s, q->x[l], q->y[l])[c] += share * (float)(factor[c] * (double)part[c][l]);
             }
             if (differs) {
                 spread(r, cell);
@@ -246,8 +248,10 @@ static void smoothPixel(Rims* r, int cell)
     const vplReflector* to = &vplFacetCache_Get(s, triangleOf(r, cell), r->queue.cache)->reflector;
     const float share = (float)__builtin_popcount(r->own[element]) / (float)(tile->sampleCount + 1);
     float* pixel = vplPixelOf(s, tile->x + at[0], tile->y + at[1]);
+    double factor[3];
+    vplFactorInPixel(s, to, triangleOf(r, cell), tile->x + at[0], tile->y + at[1], factor);
     for (int c = 0; c < 3; c++) {
-        const float rest = pixel[c] - share * (float)(to->factor[c] * (double)sums->emitted[c][element]);
+        const float rest = pixel[c] - share * (float)(factor[c] * (double)sums->emitted[c][element]);
         pixel[c] = rest > 0 ? rest : 0; // rounding may leave less than nothing
     }
     for (uint32_t left = r->own[element]; left != 0; left &= left - 1) {

@@ -176,8 +176,9 @@ typedef struct vplPassUniforms {
 
 // A triangle reflects irradiance E: radiance = emission + factor E.
 typedef struct vplReflector {
-    double factor[3]; // rho / pi
+    double factor[3]; // rho / pi, of the material alone
     float emission[3];
+    int texture; // -1: none
 } vplReflector;
 
 // A triangle as it is shaded, besides positions.

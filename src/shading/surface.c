@@ -110,9 +110,10 @@ vplFacet vplGetFacet(const vplShading* shading, int triangle)
     const vplVec3 corner = vplGeometry_Corners(g, triangle).corner[0];
     const vplRgb rho = material->diffuse, emission = material->emission;
     const double scale = 1 / VPL_PI;
-    vplFacet facet = {.normal = g->normals[triangle],
-                      .reflector = {.factor = {rho.r * scale, rho.g * scale, rho.b * scale}},
-                      .smooth = g->objects[g->owners[triangle]].smooth};
+    vplFacet facet = {
+        .normal = g->normals[triangle],
+        .reflector = {.factor = {rho.r * scale, rho.g * scale, rho.b * scale}, .texture = material->texture},
+        .smooth = g->objects[g->owners[triangle]].smooth};
     facet.offset = vplDot(facet.normal, vplSub(corner, shading->view->eye));
     const bool fromBehind = facet.offset > 0;
     if (fromBehind && shading->def->lighting == VPL_LIGHTING_PHYSICAL) {

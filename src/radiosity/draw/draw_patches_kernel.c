@@ -16,7 +16,7 @@ static vplRgb factorOf(const vplPatchFace* u, int triangle, int side)
 {
     const vplPatchDraw* d = u->draw;
     vplRgb factor = {1, 1, 1};
-    if (d->reflect) {
+    if (d->reflect && d->reflectance == NULL) {
         factor = vplRgbScale(INVERSE_PI, vplReflectanceOf(d->mesh->sides, triangle, side));
     }
     if (d->vertexValues != NULL) {
@@ -48,6 +48,21 @@ static void interpolate(const vplPatchFace* u, vplFragments* f, vplRgb factor)
             value[l] = (above < high ? above : high) * factors[c];
         }
         memcpy(f->plane[c], value, sizeof value);
+    }
+}
+
+// Multiplies irradiance by the reflectance of each pixel.
+static void reflect(const vplPatchFace* u, int triangle, vplFragments* f)
+{
+    const vplPatchDraw* d = u->draw;
+    for (int l = 0; l < VPL_LANES; l++) {
+        if (f->covered[l]) {
+            const vplRgb rho =
+                d->reflectance(d->user, triangle, f->x + l % VPL_BLOCK_SIDE, f->y + l / VPL_BLOCK_SIDE);
+            f->plane[0][l] *= INVERSE_PI * rho.r;
+            f->plane[1][l] *= INVERSE_PI * rho.g;
+            f->plane[2][l] *= INVERSE_PI * rho.b;
+        }
     }
 }
 
@@ -115,6 +130,9 @@ void VPL_KERNEL(vplShadePatch)(const void* uniforms, vplFragments* f)
         interpolate(u, f, factor);
     } else {
         fill(f, factor);
+    }
+    if (u->draw->reflect && u->draw->reflectance != NULL) {
+        reflect(u, mesh->triangleOf[f->primitive], f);
     }
     if (u->draw->outlines) {
         outline(u, f);

@@ -179,6 +179,9 @@ static vplPatchSide makeSide(const vplPatches* patches, int patch, bool back, un
     if (!back) {
         side.emission = vplScaleRadiometric(VPL_PI, material->emission);
     }
+    if (g->paint != NULL) {
+        side.reflectance = vplPaint_MeanOfPart(g, triangle, side.corners);
+    }
     if (vplPatches_IsGroup(patches, patch)) {
         meanOfGroup(patches, patch, back, &side);
     }

@@ -7,6 +7,7 @@
 #define VPL_RADIOSITY_SIDE_H
 
 #include "base/arena.h"
+#include "geometry/paint.h"
 #include "radiosity/radiosity_kernels.h"
 
 // vplPatchSide.open where all cells are open.
@@ -49,7 +50,7 @@ vplResult vplPatchSides_FindHitShares(const vplPatchSides* sides, uint64_t seed,
 // The reflectance of a triangle of the geometry.
 static inline vplRgb vplReflectanceOfTriangle(const vplGeometry* g, int triangle)
 {
-    return g->materials[g->triangleMaterials[triangle]].diffuse;
+    return vplGeometry_ReflectanceOf(g, triangle);
 }
 
 // The reflectance of a triangle that is a part of a patch. `side`: the patch's side, or -1.

@@ -5,6 +5,7 @@
 // one value per patch rays meet light that is not there: relmse 0.0042 in the room with 250 patches and 64
 // rays, 0.0033 where all light is interpolated, 0.0020 with cells, 0.0010 where near hits are lit for
 // themselves.
+#include "geometry/paint.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 #include "radiosity/mesh/patch_mesh.h"
@@ -69,7 +70,8 @@ static vplMetLight meetPatch(const void* user, const vplHit* hit, vplVec3 direct
     }
     const vplPatchPoint at = {patch, face, hit->position};
     const vplRgb e = irradianceAt(light, side, &at);
-    const vplRgb rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
+    const vplFootprint footprint = vplFootprintOfBounce(direction, hit->t);
+    const vplRgb rho = vplGeometry_Reflectance(g, hit->triangle, hit->position, &footprint);
     return (vplMetLight){{rho.r * e.r, rho.g * e.g, rho.b * e.b}, size};
 }
 

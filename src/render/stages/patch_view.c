@@ -4,6 +4,7 @@
 #include "math/vec.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
+#include "shading/pixel_paint.h"
 
 #include <math.h>
 
@@ -47,6 +48,17 @@ static vplResult findValues(const vplRun* run, vplShow show, vplRgb* values)
     return VPL_SUCCESS;
 }
 
+typedef struct SeenFrom {
+    const vplGeometry* geometry;
+    const vplView* view;
+} SeenFrom;
+
+static vplRgb reflectanceSeen(const void* user, int triangle, int x, int y)
+{
+    const SeenFrom* from = user;
+    return vplReflectanceInPixel(from->geometry, from->view, triangle, x, y);
+}
+
 static vplResult draw(const vplRun* run, const vplView* view, vplArena* scratch, vplImage* image)
 {
     const vplRenderOptions* o = &run->plan->options;
@@ -62,10 +74,13 @@ static vplResult draw(const vplRun* run, const vplView* view, vplArena* scratch,
     if (!light) {
         TRY(findValues(run, o->output.show, values));
     }
+    const SeenFrom from = {sides->patches->geometry, view};
     const vplPatchDraw def = {.mesh = mesh,
                               .vertexValues = smooth ? corners : NULL,
                               .values = light ? solution->irradiance : values,
                               .reflect = light,
+                              .reflectance = from.geometry->paint != NULL ? reflectanceSeen : NULL,
+                              .user = &from,
                               .outlines = o->output.show == VPL_SHOW_PATCHES};
     vplRasterStats stats = {0};
     vplView_ToClip(view, mesh->positions, mesh->vertexCount, clip);

@@ -2,6 +2,7 @@
 #include "render/stages/show.h"
 
 #include "base/context.h"
+#include "geometry/paint.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 
@@ -106,8 +107,9 @@ static void showParaboloidRow(void* data, int row, int worker)
         if (vplParaboloidMap_GetHit(s->paraboloid, s->geometry,
                                     (vplParaboloidTexel){hemisphere, i, row % size}, &hit, &direction)) {
             const vplVec3 n = vplDot(direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
+            const vplFootprint footprint = {direction, 2 * hit.t / (float)size};
             const vplRgb albedo =
-                s->geometry->materials[s->geometry->triangleMaterials[hit.triangle]].diffuse;
+                vplGeometry_Reflectance(s->geometry, hit.triangle, hit.position, &footprint);
             const Texel shown = {hit.position, n, albedo, {hit.t, hit.t, hit.t}};
             putTexel(s->geometry, &shown, i, (hemisphere + 1) * size - 1 - row % size, s->image);
         }

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// Pictures as their files hold them, for textures: codes of 8 bits with their alpha, not turned into linear light.
+#ifndef VPL_IMAGE_TEXELS_H
+#define VPL_IMAGE_TEXELS_H
+
+#include "base/context.h"
+
+typedef struct vplTexels {
+    int width, height, channels;
+    uint8_t* codes;     // NULL: the picture cannot be read
+    const char* reason; // why not
+} vplTexels;
+
+// Decodes PNG, JPEG, BMP or TGA. The size is checked before anything is decoded. vplTexels_Free frees what it gives.
+vplTexels vplTexels_Decode(const uint8_t* bytes, size_t size);
+void vplTexels_Free(vplTexels* texels);
+
+#endif
