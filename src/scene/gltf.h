@@ -41,7 +41,6 @@ typedef enum vplGltfLoss {
     VPL_GLTF_STILL,
     VPL_GLTF_EMITS_ONE_SIDED,
     VPL_GLTF_EMISSIVE_TEXTURES,
-    VPL_GLTF_BRIGHT,
     VPL_GLTF_NO_PICTURE,
     VPL_GLTF_OTHER_SET,
     VPL_GLTF_LOSSES
@@ -51,6 +50,11 @@ typedef struct vplGltfBuffer {
     const uint8_t* bytes; // NULL: not read yet
     size_t size;
 } vplGltfBuffer;
+
+typedef struct vplGltfMean {
+    bool known;
+    double mean[3];
+} vplGltfMean;
 
 typedef struct vplGltfNode {
     int parent; // -1: none
@@ -74,6 +78,7 @@ typedef struct vplGltf {
     int* order; // nodes, parents before children
     int orderCount;
     int *meshOf, *materialOf, *textureOf; // of the scene, by the file's; -1: none, -2: not read yet
+    vplGltfMean* means;                   // two for each image: of numbers, of colours
     int defaultMaterial;                  // of the scene; -2: not read yet
     const char* prefix;                   // of names of materials
     vplNames names;                       // of materials so far
@@ -105,6 +110,9 @@ vplResult vplGltf_ReadElement(const vplJson* element, int count, int* out);
 // The bytes of a buffer view, whose stride is 0 if it has none.
 vplResult vplGltf_ReadView(vplGltf* g, int index, const uint8_t** bytesOut, size_t* sizeOut,
                            size_t* strideOut);
+
+// The path of a file beside this one that a URI names.
+vplResult vplGltf_FindBeside(vplGltf* g, const char* uri, const char** pathOut);
 
 // Reads a URI: data in base64, or a file beside. *bytesOut is in the scratch arena.
 vplResult vplGltf_ReadUri(vplGltf* g, const vplJson* owner, const uint8_t** bytesOut, size_t* sizeOut);
@@ -139,10 +147,12 @@ void vplGltfAccessor_CopyIndices(const vplGltfAccessor* accessor, uint32_t* out)
 // The mesh of the scene for one of the file, which it reads when it is first asked for; -1 if it has no triangles.
 vplResult vplGltf_GetMesh(vplGltf* g, int index, int* out);
 
-// Reads the texture that `key` of an object names into a material, and the mean metalness of the object's
-// metallicRoughnessTexture, by which it multiplies *metal.
-vplResult vplGltf_ReadTextures(vplGltf* g, const vplJson* object, const char* key, vplMaterialDef* def,
-                               double* metal);
+// Reads the texture that `key` of an object names into a material.
+vplResult vplGltf_ReadTexture(vplGltf* g, const vplJson* object, const char* key, vplMaterialDef* def);
+
+// The mean of such a texture's channels, of linear light if it has colours; 1 if there is none.
+vplResult vplGltf_ReadMean(vplGltf* g, const vplJson* object, const char* key, bool colours,
+                           double meanOut[3]);
 
 // The material of the scene for one of the file, or for -1, the default material.
 vplResult vplGltf_GetMaterial(vplGltf* g, int index, int* out);

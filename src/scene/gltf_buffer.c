@@ -60,27 +60,18 @@ static void decodePercents(const char* uri, char* out)
     *out = 0;
 }
 
-// Reads a file beside into the scratch arena.
-static vplResult readBeside(vplGltf* g, const vplJson* at, const char* name, const uint8_t** bytesOut,
-                            size_t* sizeOut)
+vplResult vplGltf_FindBeside(vplGltf* g, const char* uri, const char** pathOut)
 {
-    char *path = vplPathBeside(g->context, g->path, name, strlen(name)), *bytes = NULL;
+    char* name = vplArena_Alloc(g->scratch, strlen(uri) + 1, 1);
+    TRY(vplArena_Check(g->scratch));
+    decodePercents(uri, name);
+    char* path = vplPathBeside(g->context, g->path, name, strlen(name));
     if (path == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    vplResult result = VPL_SUCCESS;
-    if (!vplIsRegularFile(path)) { // a device or a pipe would make us wait
-        result = vplJson_Fail(at, "is \"%.80s\", but there is no file %.200s", name, path);
-    } else {
-        result = vplReadFile(g->context, path, &bytes, sizeOut);
-    }
-    if (result == VPL_SUCCESS) {
-        *bytesOut = vplArena_Copy(g->scratch, bytes, *sizeOut, 1);
-        result = vplArena_Check(g->scratch);
-        vplFree(g->context, bytes);
-    }
+    *pathOut = vplArena_CopyString(g->scratch, path);
     vplFree(g->context, path);
-    return result;
+    return vplArena_Check(g->scratch);
 }
 
 vplResult vplGltf_ReadUri(vplGltf* g, const vplJson* owner, const uint8_t** bytesOut, size_t* sizeOut)
@@ -99,10 +90,16 @@ vplResult vplGltf_ReadUri(vplGltf* g, const vplJson* owner, const uint8_t** byte
     if (strstr(uri, "://") != NULL) {
         return vplJson_Fail(&member, "is \"%.80s\", must be a file beside this one", uri);
     }
-    char* name = vplArena_Alloc(g->scratch, strlen(uri) + 1, 1);
-    TRY(vplArena_Check(g->scratch));
-    decodePercents(uri, name);
-    return readBeside(g, &member, name, bytesOut, sizeOut);
+    const char* path = NULL;
+    char* bytes = NULL;
+    TRY(vplGltf_FindBeside(g, uri, &path));
+    if (!vplIsRegularFile(path)) { // a device or a pipe would make us wait
+        return vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", uri, path);
+    }
+    TRY(vplReadFile(g->context, path, &bytes, sizeOut));
+    *bytesOut = vplArena_Copy(g->scratch, bytes, *sizeOut, 1);
+    vplFree(g->context, bytes);
+    return vplArena_Check(g->scratch);
 }
 
 static vplResult readBuffer(vplGltf* g, int index)

@@ -38,7 +38,8 @@ vplResult vplGltf_ReadWhole(const vplJson* object, const char* key, int64_t* out
 static vplResult requireBelow(const vplJson* at, int64_t index, int count, int* out)
 {
     if (index >= count) {
-        return vplJson_Fail(at, "is %lld, must be one of %d", (long long)index, count);
+        return vplJson_Fail(at, "is %lld, but there %s %d", (long long)index,
+                            count == 1 ? "is only" : "are only", count);
     }
     *out = (int)index;
     return VPL_SUCCESS;
@@ -187,8 +188,6 @@ static vplResult findLists(vplGltf* g)
     static const char* const names[] = {"accessors", "animations", "buffers", "bufferViews", "cameras",
                                         "images",    "materials",  "meshes",  "nodes",       "samplers",
                                         "scenes",    "textures",   "lights"};
-    g->root = vplJson_Root(&g->json);
-    TRY(vplJson_RequireObject(&g->root));
     g->extensions = vplJson_Member(&g->root, "extensions");
     g->punctual = vplJson_Member(&g->extensions, "KHR_lights_punctual");
     for (int i = 0; i < VPL_GLTF_LISTS; i++) {
@@ -222,15 +221,19 @@ vplResult vplGltf_Open(vplGltf* g)
 {
     TRY(openJson(g));
     g->json.subject = "the file";
-    TRY(findLists(g));
+    g->root = vplJson_Root(&g->json);
+    TRY(vplJson_RequireObject(&g->root));
     TRY(checkVersion(g));
     TRY(checkExtensions(g));
+    TRY(findLists(g));
     g->buffers =
         vplArena_AllocZero(g->scratch, (size_t)vplGltf_Count(g, VPL_GLTF_BUFFERS), sizeof *g->buffers);
     g->meshOf = allocateNumbers(g, VPL_GLTF_MESHES);
     g->materialOf = allocateNumbers(g, VPL_GLTF_MATERIALS);
     g->textureOf = allocateNumbers(g, VPL_GLTF_TEXTURES);
     g->defaultMaterial = VPL_GLTF_NOT_READ;
+    g->means =
+        vplArena_AllocZero(g->scratch, (size_t)vplGltf_Count(g, VPL_GLTF_IMAGES), 2 * sizeof *g->means);
     return vplArena_Check(g->scratch);
 }
 

@@ -53,9 +53,14 @@ static vplResult readReflectance(vplGltf* g, const vplJson* material, const vplJ
         TRY(readColour(&metallic, "baseColorFactor", 4, 1, colour));
         TRY(readShare(&metallic, "metallicFactor", &metal));
     }
-    TRY(vplGltf_ReadTextures(g, old ? &glossy : &metallic, old ? "diffuseTexture" : "baseColorTexture", def,
-                             &metal));
-    g->losses[VPL_GLTF_METALS] += metal > 0 && material->value != NULL;
+    const vplJson* owner = old ? &glossy : &metallic;
+    double mean[3] = {1, 1, 1};
+    TRY(vplGltf_ReadTexture(g, owner, old ? "diffuseTexture" : "baseColorTexture", def));
+    if (metal > 0) {
+        TRY(vplGltf_ReadMean(g, owner, "metallicRoughnessTexture", false, mean));
+        metal *= mean[2];
+    }
+    g->losses[VPL_GLTF_METALS] += metal > 0.01 && material->value != NULL;
     const double share = 1 - metal + METAL * metal;
     def->diffuse =
         (vplRgb){(float)(share * colour[0]), (float)(share * colour[1]), (float)(share * colour[2])};
@@ -77,9 +82,12 @@ static vplResult readEmission(vplGltf* g, const vplJson* material, const vplJson
             return vplJson_Fail(&member, "is %g, must be in [0, %g]", strength, (double)VPL_MAX_MAGNITUDE);
         }
     }
-    double most = 0;
+    double most = 0, mean[3] = {1, 1, 1};
+    if (colour[0] + colour[1] + colour[2] > 0) {
+        TRY(vplGltf_ReadMean(g, material, "emissiveTexture", true, mean));
+    }
     for (int k = 0; k < 3; k++) {
-        colour[k] *= strength;
+        colour[k] *= strength * mean[k];
         most = fmax(most, colour[k]);
     }
     if (most > (double)VPL_MAX_MAGNITUDE) {

@@ -22,9 +22,7 @@ static const char* const SENTENCES[VPL_GLTF_LOSSES] = {
     [VPL_GLTF_UNUSED] = "%lld cameras and lights have no effect in a model that is part of a scene file",
     [VPL_GLTF_STILL] = "%lld nodes with meshes are animated: they stand still, only cameras and lights move",
     [VPL_GLTF_EMITS_ONE_SIDED] = "%lld double-sided materials emit light: from their front sides only",
-    [VPL_GLTF_EMISSIVE_TEXTURES] =
-        "%lld materials have emissive textures, which have no effect: they emit evenly",
-    [VPL_GLTF_BRIGHT] = "%lld normal, occlusion or other textures have no effect",
+    [VPL_GLTF_EMISSIVE_TEXTURES] = "%lld materials have emissive textures: they emit the mean of it evenly",
     [VPL_GLTF_NO_PICTURE] = "%lld textures name no PNG or JPEG picture: without them",
     [VPL_GLTF_OTHER_SET] = "%lld textures use other coordinates than TEXCOORD_0: without them",
 };
@@ -83,7 +81,7 @@ static vplResult readModel(vplGltf* g, bool whole, vplModel* model)
         g->losses[VPL_GLTF_UNUSED] += g->nodes[i].inScene && other && !whole;
     }
     if (model->count == 0) {
-        return vplJson_Fail(&g->root, "places no mesh with triangles, must have one");
+        return vplJson_Fail(&g->root, "places no mesh with triangles that have area, must have one");
     }
     TRY(whole ? vplGltf_AddCameras(g, model, &motion) : VPL_SUCCESS);
     TRY(whole ? vplGltf_AddLights(g, &motion) : VPL_SUCCESS);

@@ -366,11 +366,12 @@ static vplResult addLight(const Adder* a, double slope, bool areaLight)
     return addLamp(a, &LAMPS[1], distance);
 }
 
-static bool emits(const vplScene* scene)
+// True if a material's radiance is above a limit, or there are lights.
+static bool emits(const vplScene* scene, float limit)
 {
     for (int i = 0; i < scene->materialCount; i++) {
         vplRgb e = scene->materials[i].emission;
-        if (e.r > 0 || e.g > 0 || e.b > 0) {
+        if (e.r > limit || e.g > limit || e.b > limit) {
             return true;
         }
     }
@@ -400,7 +401,9 @@ static vplResult fill(vplScene* scene, const char* path, const vplModelSceneDef*
     const vplResult result = addObjects(scene, path, &model);
     vplArena_Destroy(model.arena);
     TRY(result);
-    const bool light = !emits(scene), camera = scene->cameraCount == 0, ground = camera && def->ground;
+    const bool camera = scene->cameraCount == 0, ground = camera && def->ground;
+    // Displays and signal lamps of a glTF model glow with 1 at most; they do not light it.
+    const bool light = !emits(scene, camera && vplModelKindOf(path) == VPL_MODEL_GLTF ? 1 : 0);
     const Field field = fieldOf(def->aspect);
     if (!light && !camera) {
         return VPL_SUCCESS;

@@ -11,6 +11,7 @@ typedef struct Header {
     const char* at;   // the next line
     const char* mark; // the end of a line: "\n", "\r\n" or "\r"
     bool hasFormat;
+    vplTally unknown; // lines
 } Header;
 
 // Cuts the next line off the header; false at the end of the file.
@@ -132,8 +133,10 @@ static vplResult readLine(Header* h, vplWord line, bool* last)
         return readProperty(h, line, keyword);
     }
     *last = vplWord_Is(keyword, "end_header");
-    return *last ? VPL_SUCCESS
-                 : vplText_FailWord(&h->ply->text, keyword, "element, property, comment or end_header");
+    if (!*last) {
+        vplTally_Add(&h->unknown, keyword.start);
+    }
+    return VPL_SUCCESS;
 }
 
 // The first line decides how lines end: behind "\r" alone, a byte 10 is data.
@@ -171,6 +174,7 @@ vplResult vplPly_ReadHeader(vplPly* ply)
         }
         TRY(readLine(&h, line, &last));
     }
+    vplText_WarnTally(&ply->text, &h.unknown, "this line of the header has no effect", "lines");
     ply->data = ply->at = h.at;
     return VPL_SUCCESS;
 }
