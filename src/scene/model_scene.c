@@ -287,13 +287,9 @@ static vplResult addGround(const Adder* a, const Ground* g)
     return addQuad(a, "ground", g->centre, x, y, material);
 }
 
-static vplResult addPoint(const Adder* a, double distance)
+// Adds a point light that gives surfaces that face it, at the distance, the irradiance pi.
+static vplResult addPoint(const Adder* a, const double position[3], double distance)
 {
-    double position[3];
-    normalize3(LAMPS[0].to, position);
-    for (int k = 0; k < 3; k++) {
-        position[k] = a->look->centre[k] + distance * position[k];
-    }
     const float intensity = (float)fmin(VPL_PI * distance * distance, (double)VPL_MAX_MAGNITUDE);
     vplEmitterDef def = vplDefaultEmitterDef();
     def.position = vplRound3(position);
@@ -303,6 +299,28 @@ static vplResult addPoint(const Adder* a, double distance)
            "%s: nothing emits light; a point light of %g W/sr stands at (%g, %g, %g)", a->path,
            (double)intensity, position[0], position[1], position[2]);
     return vplScene_AddEmitter(a->scene, &def, NULL);
+}
+
+// Adds a point light in place of the key lamp.
+static vplResult addPointLamp(const Adder* a, double distance)
+{
+    double position[3];
+    normalize3(LAMPS[0].to, position);
+    for (int k = 0; k < 3; k++) {
+        position[k] = a->look->centre[k] + distance * position[k];
+    }
+    return addPoint(a, position, distance);
+}
+
+// Adds a point light at the file's own camera: what it sees is lit, be it inside a room or outside.
+static vplResult addHeadlight(const Adder* a)
+{
+    double eye[3], way[3];
+    vplToDouble3(a->scene->cameras[0].def.eye, eye);
+    for (int k = 0; k < 3; k++) {
+        way[k] = a->look->centre[k] - eye[k];
+    }
+    return addPoint(a, eye, fmax(sqrt(vplDot3(way, way)), 0.1 * a->look->radius));
 }
 
 // Unit vectors of a lamp: to it, and along its sides; x cross y points to the centre.
@@ -360,7 +378,7 @@ static vplResult addLight(const Adder* a, double slope, bool areaLight)
     const double distance =
         fmax(fmax(LAMP_FAR * sqrt(vplDot3(l->eye, l->eye)), 2 * l->radius), 1.01 * leastDistance(l, slope));
     if (!areaLight) {
-        return addPoint(a, distance);
+        return addPointLamp(a, distance);
     }
     TRY(addLamp(a, &LAMPS[0], distance));
     return addLamp(a, &LAMPS[1], distance);
@@ -413,6 +431,9 @@ static vplResult fill(vplScene* scene, const char* path, const vplModelSceneDef*
     const Adder adder = {scene, path, &look};
     TRY(camera ? addCamera(&adder, ground ? &under : NULL) : VPL_SUCCESS);
     TRY(ground ? addGround(&adder, &under) : VPL_SUCCESS);
+    if (light && !camera) {
+        return addHeadlight(&adder);
+    }
     return light ? addLight(&adder, field.slopes[1], def->areaLight) : VPL_SUCCESS;
 }
 
