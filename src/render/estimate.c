@@ -348,7 +348,7 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
                .sides = p->patchSides};
     TRY(estimateLinks(r, &s));
     // The caller's own memory in the context does not count, but the scene's does.
-    const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplArena_GetBytes(r->run.scene->arena);
+    const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplScene_GetBytes(r->run.scene);
     const int64_t peak = (int64_t)vplContext_GetPeakBytes(r->run.context), before = (int64_t)r->peakBytes;
     int64_t live = (int64_t)vplContext_GetBytes(r->run.context) - foreign, remade = 0;
     p->peakBytes = (peak > before ? peak : before) - foreign;

@@ -58,7 +58,7 @@ static void readTexcoord(vplObj* obj, vplWord line, vplTexcoord* out)
             x <= VPL_MAX_MAGNITUDE) {
             *parts[i] = x;
         } else if (any || i == 0) { // v may be left out
-            vplTally_Add(&obj->unplaced, line.start);
+            vplTally_Add(&obj->unplaced, any ? word.start : line.start);
         }
     }
 }

@@ -78,6 +78,15 @@ void vplScene_Destroy(vplScene* scene)
     }
 }
 
+size_t vplScene_GetBytes(const vplScene* scene)
+{
+    size_t bytes = vplArena_GetBytes(scene->arena);
+    for (int i = 0; i < scene->textureCount; i++) {
+        bytes += vplArena_GetBytes(scene->textures[i].decoded->arena);
+    }
+    return bytes;
+}
+
 void vplScene_DropTextures(vplScene* scene, int count)
 {
     while (scene->textureCount > count) {

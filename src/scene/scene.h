@@ -51,6 +51,9 @@ vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* 
 // Adds a material without checking it or copying its name.
 vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut);
 
+// Bytes that the context holds for a scene and its textures.
+size_t vplScene_GetBytes(const vplScene* scene);
+
 // Releases all textures but the first `count`.
 void vplScene_DropTextures(vplScene* scene, int count);
 

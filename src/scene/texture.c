@@ -17,17 +17,6 @@ static int halved(int size)
     return size > 1 ? size / 2 : 1;
 }
 
-double vplTexture_Bytes(int width, int height)
-{
-    double texels = (double)width * height;
-    while (width > 1 || height > 1) {
-        width = halved(width);
-        height = halved(height);
-        texels += (double)width * height;
-    }
-    return texels * VPL_TEXTURE_CHANNELS * sizeof(uint16_t);
-}
-
 static vplResult allocateLevels(vplTexture* t, int width, int height)
 {
     for (bool last = false; !last; t->levelCount++) {

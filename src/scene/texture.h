@@ -30,9 +30,6 @@ void vplTexture_Retain(vplTexture* texture);
 // Destroys the texture when its last user releases it.
 void vplTexture_Release(vplTexture* texture);
 
-// Bytes that a texture of this size takes.
-double vplTexture_Bytes(int width, int height);
-
 // The part of the texture that a lookup averages over: a parallelogram of texture coordinates around a point.
 typedef struct vplTextureArea {
     double u, v;
