@@ -20,6 +20,8 @@ endif
 # -ffp-contract=off: a fused multiply-add rounds once instead of twice, so bits would depend on the machine.
 # -fno-math-errno and -fno-trapping-math change no value; without them sqrtf and ?: do not vectorise.
 STANDARD := -std=gnu11 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-strict-aliasing
+# One set of objects serves both libraries. What the public headers do not declare stays inside of them.
+STANDARD += -fPIC -fvisibility=hidden
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wno-unknown-pragmas $(WERROR)
 INCLUDES := -Iinclude -Isrc -isystem /usr/include/stb
 OPT_release := -O3
@@ -61,9 +63,13 @@ GOLDEN_OBJECTS := $(BUILD)/obj/tests/golden/golden.o
 BENCH_PROGRAMS := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 FUZZERS        := $(patsubst tests/fuzz/%_fuzz.c,%,$(wildcard tests/fuzz/*_fuzz.c))
 REPLAYS        := $(FUZZERS:%=$(BUILD)/fuzz/%_replay)
+VERSION        := $(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl/base.h)
+# The number in the soname changes with the ABI: with the minor version while the major one is 0.
+SONAME         := libvpl.so.$(shell echo $(VERSION) | sed -e 's/^\(0\.[0-9]*\).*/\1/' -e 's/^\([1-9][0-9]*\)\..*/\1/')
+SHARED         := libvpl.so.$(VERSION)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-.PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install clean format fuzz soak faults coverage
+.PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install uninstall clean format fuzz soak faults coverage
 
 # Headers that programs need, each with the Debian package that has it.
 NEEDS := jansson.h=libjansson-dev stb_image.h=libstb-dev
@@ -77,7 +83,7 @@ all:
 	[ -z "$$missing" ] || { echo "Missing:$$missing. Get them by: sudo apt-get install$$missing (or by: make demo)" >&2; exit 1; }
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
-programs: $(BUILD)/libvpl.a $(BUILD)/vpl
+programs: $(BUILD)/libvpl.a $(BUILD)/$(SHARED) $(BUILD)/vpl
 
 ## make demo        installs what is missing, builds, renders a living room to build/demo.png
 demo: deps
@@ -167,16 +173,33 @@ faults: test-programs
 	VPL_EVERY_ALLOCATION=1 $(BUILD)/vpl-tests FailedAllocationsOfEveryMethod
 	tests/signals.sh $(BUILD)/vpl 300
 
-## make install     library, headers, program, man page and libvpl.pc under PREFIX (/usr/local)
+## make install     libraries, headers, program, man page, libvpl.pc and a CMake package under PREFIX (/usr/local)
+LIBDIR  ?= $(PREFIX)/lib
+COMPLETIONS := $(PREFIX)/share/bash-completion/completions/vpl $(PREFIX)/share/zsh/site-functions/_vpl \
+  $(PREFIX)/share/fish/vendor_completions.d/vpl.fish
+INSTALLED := $(PREFIX)/bin/vpl $(PREFIX)/share/man/man1/vpl.1 $(LIBDIR)/libvpl.a $(LIBDIR)/$(SHARED) $(LIBDIR)/$(SONAME) \
+  $(COMPLETIONS) $(LIBDIR)/libvpl.so $(LIBDIR)/pkgconfig/libvpl.pc $(LIBDIR)/cmake/libvpl $(PREFIX)/include/vpl
+FILL_IN = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@SONAME@|$(SONAME)|' \
+  -e 's|@SHARED@|$(SHARED)|' -e 's|@OMP@|$(OMP)|' -e 's|@LIBS@|$(LDLIBS)|'
 install: programs $(BUILD)/vpl.1
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/vpl $(DESTDIR)$(PREFIX)/lib/pkgconfig \
-	  $(DESTDIR)$(PREFIX)/share/man/man1
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/vpl $(DESTDIR)$(LIBDIR)/pkgconfig \
+	  $(DESTDIR)$(LIBDIR)/cmake/libvpl $(DESTDIR)$(PREFIX)/share/man/man1 $(dir $(COMPLETIONS:%=$(DESTDIR)%))
 	install $(BUILD)/vpl $(DESTDIR)$(PREFIX)/bin
 	install -m 644 include/vpl/*.h include/vpl/*.def $(DESTDIR)$(PREFIX)/include/vpl
-	install -m 644 $(BUILD)/libvpl.a $(DESTDIR)$(PREFIX)/lib
+	install -m 644 $(BUILD)/libvpl.a $(BUILD)/$(SHARED) $(DESTDIR)$(LIBDIR)
+	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libvpl.so
 	install -m 644 $(BUILD)/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl/base.h)|' \
-	  -e 's|@OMP@|$(OMP)|' -e 's|@LIBS@|$(LDLIBS)|' src/libvpl.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libvpl.pc
+	$(BUILD)/vpl completion bash > $(DESTDIR)$(word 1,$(COMPLETIONS))
+	$(BUILD)/vpl completion zsh > $(DESTDIR)$(word 2,$(COMPLETIONS))
+	$(BUILD)/vpl completion fish > $(DESTDIR)$(word 3,$(COMPLETIONS))
+	$(FILL_IN) src/libvpl.pc.in > $(DESTDIR)$(LIBDIR)/pkgconfig/libvpl.pc
+	for file in Config ConfigVersion; do \
+	  $(FILL_IN) src/libvpl$$file.cmake.in > $(DESTDIR)$(LIBDIR)/cmake/libvpl/libvpl$$file.cmake || exit 1; done
+
+## make uninstall   removes what install put there
+uninstall:
+	rm -rf $(INSTALLED:%=$(DESTDIR)%)
 
 ## make format      clang-format over all sources
 format:
@@ -196,6 +219,12 @@ $(BUILD)/libvpl.a: $(LIB_OBJECTS)
 	@rm -f $@
 	@echo "  AR  $@"
 	$(Q)$(AR) rcs $@ $^
+
+$(BUILD)/$(SHARED): $(LIB_OBJECTS)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -shared -Wl,-soname,$(SONAME) -Wl,-z,defs -o $@ $^ $(LDLIBS)
+	@ln -sf $(SHARED) $(BUILD)/$(SONAME)
+	@ln -sf $(SONAME) $(BUILD)/libvpl.so
 
 $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"

@@ -57,14 +57,15 @@ static vplCubeMap* castShadow(const vplGeometry* geometry, const vplEmitterDef* 
     return map;
 }
 
-static vplShadeLight* prepareLights(const vplLightSet* set)
+// Particles that start at the emitter are no virtual lights, so there may be fewer than the set has.
+static vplShadeLight* prepareLights(const vplLightSet* set, int* countOut)
 {
     vplShadeLight* lights = malloc((size_t)set->lightCount * sizeof *lights);
     if (lights == NULL && set->lightCount > 0) {
         fprintf(stderr, "out of memory\n");
         exit(1);
     }
-    vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights);
+    *countOut = vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights);
     return lights;
 }
 
@@ -121,8 +122,9 @@ int main(int count, char** words)
     vplLightSet* set = simulateParticles(geometry, light);
     vplShadow shadow;
     vplCubeMap* map = castShadow(geometry, light, &shadow);
-    vplShadeLight* lights = prepareLights(set);
-    lightFloor(context, lights, set->lightCount);
+    int lightCount;
+    vplShadeLight* lights = prepareLights(set, &lightCount);
+    lightFloor(context, lights, lightCount);
     vplShadeDef def = {0};
     def.accumulation = VPL_ACCUMULATE_MULTIPASS;
     def.minDistance = 0.2f;
@@ -130,7 +132,7 @@ int main(int count, char** words)
     def.shadows = &shadow;
     def.emitterCount = 1;
     def.lights = lights;
-    def.lightCount = set->lightCount;
+    def.lightCount = lightCount;
     def.emission = true;
     shadePicture(geometry, vplScene_GetCamera(scene, 0), &def, words[2]);
 

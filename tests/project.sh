@@ -49,6 +49,21 @@ check ExampleHelloRuns writes "$scratch/hello.png" "$build/examples/hello" $scen
 check ExampleStagesRuns writes "$scratch/stages.png" "$build/examples/stages" $scene "$scratch/stages.png"
 check ExampleSceneByHandRuns writes "$scratch/hand.png" "$build/examples/scene_by_hand" "$scratch/hand.png"
 check ExampleRasterizerRuns writes "$scratch/raster.png" "$build/examples/rasterizer" "$scratch/raster.png"
+check ExampleDeadlineRuns writes "$scratch/deadline.png" "$build/examples/deadline" $scene "$scratch/deadline.png" 3000
+bakes_points() {
+    [ "$("$build/examples/bake_points" $scene 20 | awk -F, 'NF == 6 && $4 >= 0 && $4 < 1e6 { n++ } END { print n }')" -eq 20 ]
+}
+check ExampleBakePointsRuns bakes_points
+walks() { # the keys change the picture; without a terminal the last one is printed
+    printf '' | "$build/examples/interactive" $scene >"$scratch/still" && printf 'wwl' |
+        "$build/examples/interactive" $scene >"$scratch/moved" && [ "$(wc -l <"$scratch/moved")" -eq 22 ] &&
+        ! cmp -s "$scratch/still" "$scratch/moved"
+}
+check ExampleInteractiveRuns walks
+walks_in_a_terminal() {
+    (sleep 4 && printf 'wq') | timeout 60 script -qec "$build/examples/interactive $scene" /dev/null | grep -aq '[0-9] passes'
+}
+! command -v script >/dev/null || check ExampleInteractiveRunsInATerminal walks_in_a_terminal
 examples_name_failures() {
     for example in hello stages; do
         ! "$build/examples/$example" nowhere.json "$scratch/nowhere.png" 2>"$scratch/errors" &&
@@ -127,16 +142,89 @@ names_what_is_missing() {
 }
 check PlainMakeNamesWhatIsMissing names_what_is_missing
 
-# Installation: a program finds the library by pkg-config alone.
-installed_program() {
-    make --no-print-directory BUILD="$build" DESTDIR="$scratch/root" PREFIX=/usr install &&
-        sed -i "s|^prefix=.*|prefix=$scratch/root/usr|" "$scratch/root/usr/lib/pkgconfig/libvpl.pc" &&
-        flags=$(PKG_CONFIG_PATH="$scratch/root/usr/lib/pkgconfig" pkg-config --cflags --libs libvpl) &&
-        "$cc" -std=gnu11 examples/hello.c $flags -o "$scratch/installed" &&
-        "$scratch/installed" $scene "$scratch/installed.png" && [ -s "$scratch/installed.png" ] &&
-        [ -s "$scratch/root/usr/share/man/man1/vpl.1" ]
+# The shared library exports what the public headers declare and nothing else. After a change of the API write the list
+# anew: nm -D --defined-only build/libvpl.so | awk '{ print $3 }' | LC_ALL=C sort >tests/data/symbols.txt
+exports() {
+    nm -D --defined-only "$build/libvpl.so" | awk '{ print $3 }' | LC_ALL=C sort
 }
-[ -n "$SANITIZE_FLAGS" ] || check InstalledLibraryIsFoundByPkgConfig installed_program
+same_symbols() {
+    exports | diff tests/data/symbols.txt -
+}
+declared_symbols() {
+    for symbol in $(exports); do
+        grep -qw "$symbol" include/vpl/*.h || { echo "no header declares $symbol" && return 1; }
+    done
+}
+[ -n "$SANITIZE_FLAGS" ] || check SharedLibraryExportsTheListedSymbols same_symbols
+[ -n "$SANITIZE_FLAGS" ] || check HeadersDeclareWhatIsExported declared_symbols
+
+# The Python package, with NumPy and without it, and its script.
+python_package() {
+    VPL_LIBRARY=$(realpath "$build/libvpl.so") PYTHONPATH=examples/python PYTHONDONTWRITEBYTECODE=1 \
+        "$@" examples/python/test_vpl.py "$build/vpl" $scene
+}
+python_script() {
+    VPL_LIBRARY=$(realpath "$build/libvpl.so") PYTHONPATH=examples/python PYTHONDONTWRITEBYTECODE=1 \
+        "$python" examples/python/error_curve.py $scene "$scratch/curve.png" | awk '
+            { last = $3 } NR == 1 { first = $3 } END { print first, last; exit !(NR == 6 && last + 0 < first / 2) }'
+}
+python=
+for candidate in python3 /usr/bin/python3; do
+    ! "$candidate" -c 'import numpy' 2>/dev/null || python=$candidate
+done
+if [ -n "$SANITIZE_FLAGS" ] || ! command -v python3 >/dev/null; then
+    echo "skipped: PythonPackage needs python3 and no sanitizer"
+else
+    check PythonPackageWithoutNumPy python_package python3 -S
+    if [ -n "$python" ]; then
+        check PythonPackageWithNumPy python_package "$python"
+        check PythonErrorCurveFalls python_script
+    else
+        echo "skipped: PythonPackageWithNumPy needs python3-numpy"
+    fi
+fi
+
+# Installation: programs find the library by pkg-config or CMake alone, and nothing is left when it is removed.
+installs_and_finds() {
+    prefix=$scratch/root/usr
+    make --no-print-directory BUILD="$build" PREFIX="$prefix" install &&
+        export PKG_CONFIG_PATH="$prefix/lib/pkgconfig" LD_LIBRARY_PATH="$prefix/lib" || return 1
+    # Static first: it must not need the shared library.
+    "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags libvpl) "$prefix/lib/libvpl.a" \
+        $(pkg-config --libs --static libvpl | sed 's/-lvpl//') -o "$scratch/static" &&
+        "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags --libs libvpl) -o "$scratch/shared" &&
+        readelf -d "$scratch/shared" | grep -q 'libvpl\.so\.0\.1\]' &&
+        "$scratch/static" $scene "$scratch/static.pfm" && "$scratch/shared" $scene "$scratch/shared.pfm" &&
+        cmp "$scratch/static.pfm" "$scratch/shared.pfm" && [ -s "$prefix/share/man/man1/vpl.1" ]
+}
+packaged_program() {
+    cmake -S examples/embed/package -B "$scratch/package" -DCMAKE_PREFIX_PATH="$prefix" &&
+        cmake --build "$scratch/package" && "$scratch/package/hello-vpl" $scene "$scratch/vpl.pfm" &&
+        "$scratch/package/hello-vpl_static" $scene "$scratch/vpl_static.pfm" && cmp "$scratch/vpl.pfm" "$scratch/vpl_static.pfm"
+}
+embedded_by_cmake() {
+    cmake -S examples/embed/cmake -B "$scratch/cmake" -DBUILD="$(realpath "$build")" && cmake --build "$scratch/cmake" &&
+        "$scratch/cmake/hello" $scene "$scratch/cmake.png"
+}
+leaves_nothing() {
+    make --no-print-directory BUILD="$build" PREFIX="$prefix" uninstall && ! find "$prefix" -name '*vpl*' | grep .
+}
+# A project with libvpl's sources inside takes its objects from the build under test, or it would compile all of them.
+embedded_program() {
+    mkdir -p "$scratch/embedded" && cp -a "$build/obj" "$build/libvpl.a" "$scratch/embedded" &&
+        make -C examples/embed/make BUILD="$scratch/embedded" CC="$cc" && "$scratch/embedded/hello" $scene "$scratch/embedded.png"
+}
+if [ -z "$SANITIZE_FLAGS" ]; then
+    check InstalledLibrariesAreFoundByPkgConfig installs_and_finds
+    check SourcesInsideAnotherProjectBuildByThreeLines embedded_program
+    if command -v cmake >/dev/null; then
+        check InstalledLibrariesAreFoundByCMake packaged_program
+        check SourcesInsideAnotherProjectBuildByCMake embedded_by_cmake
+    else
+        echo "skipped: InstalledLibrariesAreFoundByCMake needs cmake"
+    fi
+    check UninstallLeavesNothing leaves_nothing
+fi
 
 # The man page names every option of rendering and of the program once, under the heading that the help has.
 options_in_man_page() {

@@ -424,8 +424,8 @@ static vplResult encodePng(Attempt* a)
     write.tonemap = a->variant ? VPL_TONEMAP_AGX : VPL_TONEMAP_REINHARD;
     write.exposure = VPL_EXPOSURE_AUTO;
     TRY(vplImage_Create(a->context, 60, 40, &a->image));
-    const vplResult result = vplImage_EncodePng(a->image, &write, &bytes, &size);
-    vplPng_Free(a->context, bytes);
+    const vplResult result = vplImage_Encode(a->image, ".png", &write, &bytes, &size);
+    vplBytes_Free(a->context, bytes);
     return result;
 }
 

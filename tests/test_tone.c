@@ -243,11 +243,11 @@ static void assertSamePng(const vplImage* image, const vplWriteOptions* a, const
 {
     uint8_t *bytesA, *bytesB;
     size_t sizeA, sizeB;
-    assert_int_equal(vplImage_EncodePng(image, a, &bytesA, &sizeA), VPL_SUCCESS);
-    assert_int_equal(vplImage_EncodePng(image, b, &bytesB, &sizeB), VPL_SUCCESS);
+    assert_int_equal(vplImage_Encode(image, ".png", a, &bytesA, &sizeA), VPL_SUCCESS);
+    assert_int_equal(vplImage_Encode(image, ".png", b, &bytesB, &sizeB), VPL_SUCCESS);
     assert_true(sizeA == sizeB && memcmp(bytesA, bytesB, sizeA) == 0);
-    vplPng_Free(image->context, bytesA);
-    vplPng_Free(image->context, bytesB);
+    vplBytes_Free(image->context, bytesA);
+    vplBytes_Free(image->context, bytesB);
 }
 
 TEST(AFileOfAutomaticExposureHasTheOneFound, 1)
@@ -271,11 +271,11 @@ TEST(OptionsOfFilesOutOfRangeAreRefused, 1)
     vplWriteOptions options = vplDefaultWriteOptions();
     assert_true(options.exposure == 0 && options.tonemap == VPL_TONEMAP_NONE);
     options.exposure = 65;
-    assert_int_equal(vplImage_EncodePng(image, &options, &bytes, &size), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplImage_Encode(image, ".png", &options, &bytes, &size), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "exposure is 65, must be in [-64, 64] or VPL_EXPOSURE_AUTO"));
     options = vplDefaultWriteOptions();
     options.tonemap = (vplToneMap)4;
-    assert_int_equal(vplImage_EncodePng(image, &options, &bytes, &size), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplImage_Encode(image, ".png", &options, &bytes, &size), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "tonemap is 4"));
     vplImage_Destroy(image);
 }

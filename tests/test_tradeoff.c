@@ -177,7 +177,7 @@ TEST(EncodedPngIsTheFileThatWouldBeWritten, 1)
     uint8_t* bytes = NULL;
     size_t size = 0;
     const char* path = "/tmp/vpl-test-encode.png";
-    assert_int_equal(vplImage_EncodePng(image, NULL, &bytes, &size), VPL_SUCCESS);
+    assert_int_equal(vplImage_Encode(image, ".png", NULL, &bytes, &size), VPL_SUCCESS);
     assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
     static uint8_t file[4096];
     FILE* opened = fopen(path, "rb");
@@ -186,9 +186,9 @@ TEST(EncodedPngIsTheFileThatWouldBeWritten, 1)
     fclose(opened);
     remove(path);
     assert_memory_equal(file, bytes, size);
-    vplPng_Free(context, bytes);
+    vplBytes_Free(context, bytes);
     image->pixels[7] = NAN;
-    assert_int_equal(vplImage_EncodePng(image, NULL, &bytes, &size), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplImage_Encode(image, ".png", NULL, &bytes, &size), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "pixel (2, 0) channel 1"));
     vplImage_Destroy(image);
 }

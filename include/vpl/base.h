@@ -8,9 +8,27 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
+// Every header's declarations have C linkage and are what the shared library exports.
+#if defined(__GNUC__)
+#define VPL_EXPORT_BEGIN _Pragma("GCC visibility push(default)")
+#define VPL_EXPORT_END   _Pragma("GCC visibility pop")
+#else
+#define VPL_EXPORT_BEGIN
+#define VPL_EXPORT_END
 #endif
+#ifdef __cplusplus
+#define VPL_HEADER_BEGIN                                                                                     \
+    extern "C" {                                                                                             \
+    VPL_EXPORT_BEGIN
+#define VPL_HEADER_END                                                                                       \
+    VPL_EXPORT_END                                                                                           \
+    }
+#else
+#define VPL_HEADER_BEGIN VPL_EXPORT_BEGIN
+#define VPL_HEADER_END   VPL_EXPORT_END
+#endif
+
+VPL_HEADER_BEGIN
 
 #define VPL_VERSION_MAJOR  0
 #define VPL_VERSION_MINOR  1
@@ -26,8 +44,8 @@ extern "C" {
 // Most worker threads one context may use.
 #define VPL_MAX_WORKERS 1024
 
-// The result of a call. On failure, all output parameters are untouched, and the context's log has received
-// one sentence that names the cause.
+// The result of a call. On failure, all output parameters are untouched, and one sentence that names the cause
+// goes to the context's log and to vplContext_GetLastMessage.
 typedef enum vplResult {
     VPL_SUCCESS = 0,
     VPL_CANCELLED,        // the progress callback returned false
@@ -45,6 +63,10 @@ typedef enum vplLogLevel { VPL_LOG_ERROR = 0, VPL_LOG_WARNING, VPL_LOG_INFO } vp
 
 // Receives one message, a sentence without a line break. The text is valid during the call only.
 typedef void vplLogFcn(void* user, vplLogLevel level, const char* message);
+
+// A log for vplContextDef.log: writes errors and warnings to stderr, one line each. If `user` is not NULL it also
+// writes notes (VPL_LOG_INFO).
+void vplLogToStderr(void* user, vplLogLevel level, const char* message);
 
 // An allocator with the contract of Lua's. If newSize is 0, frees `memory` and returns NULL; if `memory` is
 // NULL, allocates; otherwise resizes. oldSize is the size that `memory` has. Blocks are aligned like
@@ -78,7 +100,7 @@ const char* vplIsa_GetName(vplIsa isa);
 typedef struct vplContextDef {
     vplAllocFcn* alloc;             // NULL (default): malloc, realloc and free
     void* allocUser;                // passed to alloc
-    vplLogFcn* log;                 // NULL (default): silence
+    vplLogFcn* log;                 // NULL (default): silence; vplLogToStderr, or a function of the caller's
     void* logUser;                  // passed to log
     int workerCount;                // threads, [0, VPL_MAX_WORKERS]; 0 (default): one per processor
     vplIsa isa;                     // default VPL_ISA_AUTO; an error if the machine lacks it
@@ -96,10 +118,23 @@ typedef struct vplContext vplContext;
 
 // Creates a context. `def` NULL means all defaults. VPL_INVALID_ARGUMENT for a def out of range,
 // VPL_OUT_OF_MEMORY.
+//
+// The ABI of the library is its major and minor version: within one, sizes and fields of structs and what functions take
+// stay as they are, and so does the soname. vplContextDef keeps its layout in all versions.
 vplResult vplContext_Create(const vplContextDef* def, vplContext** contextOut);
+
+// What vplContext_Create calls, with the version of the headers that the program was built with. Any other major or minor
+// version than the library's is VPL_INVALID_ARGUMENT, because structs may differ. For other languages.
+vplResult vplContext_CreateForAbi(int major, int minor, const vplContextDef* def, vplContext** contextOut);
+#define vplContext_Create(def, contextOut)                                                                   \
+    vplContext_CreateForAbi(VPL_VERSION_MAJOR, VPL_VERSION_MINOR, def, contextOut)
 
 // Destroys a context. NULL is allowed.
 void vplContext_Destroy(vplContext* context);
+
+// The sentence of the last call that failed, "" before one does; NULL as context is allowed and gives "". The context owns
+// the text, which stays until a call fails again. Texts of more than 4,000 bytes lack their middle.
+const char* vplContext_GetLastMessage(const vplContext* context);
 
 // Bytes held now, and the most held at once since creation or the last reset.
 size_t vplContext_GetBytes(const vplContext* context);
@@ -124,8 +159,6 @@ vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes,
 // The version of the library, VPL_VERSION_STRING of its headers.
 const char* vplGetVersion(void);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

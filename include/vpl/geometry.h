@@ -5,9 +5,7 @@
 
 #include <vpl/scene.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 // ---- placements, rays and hits
 
@@ -328,8 +326,6 @@ typedef struct vplPatchParts {
 
 vplPatchParts vplPatches_GetParts(const vplPatches* patches, int patch);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

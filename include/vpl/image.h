@@ -5,9 +5,7 @@
 
 #include <vpl/vecmath.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 // A picture of linear RGB. Row 0 is the top; pixel (x, y) starts at pixels[3 * (y * width + x)].
 typedef struct vplImage {
@@ -47,6 +45,35 @@ typedef struct vplWriteOptions {
 
 vplWriteOptions vplDefaultWriteOptions(void);
 
+// How pixels lie in memory. Alpha is 1: pictures are opaque.
+typedef enum vplPixelFormat {
+    VPL_PIXELS_RGB_FLOAT = 0, // linear, as in vplImage
+    VPL_PIXELS_RGBA_FLOAT,
+    VPL_PIXELS_RGB_SRGB8, // a byte each, after exposure and tone map, as in a PNG
+    VPL_PIXELS_RGBA_SRGB8,
+    VPL_PIXELS_NUMBER_FLOAT // the red channel alone, for layers of numbers such as depth
+} vplPixelFormat;
+
+// Memory of the caller that receives a picture. Only the bytes of pixels are written, not those between them.
+typedef struct vplPixelsDef {
+    void* first;           // of the top left pixel
+    vplPixelFormat format; // default VPL_PIXELS_RGB_FLOAT
+    ptrdiff_t
+        pixelStride; // bytes from a pixel to its right neighbour, at least its size; 0 (default): its size
+    ptrdiff_t rowStride; // bytes from a row to the one below; negative where rows go up; 0 (default): no gap
+    float exposure;      // of bytes, as vplWriteOptions.exposure; default 0
+    vplToneMap tonemap;  // of bytes; default VPL_TONEMAP_NONE
+    uint32_t cookie;     // set by vplDefaultPixelsDef
+} vplPixelsDef;
+
+vplPixelsDef vplDefaultPixelsDef(void);
+
+// Bytes of one pixel.
+size_t vplPixelFormat_GetSize(vplPixelFormat format);
+
+// Copies a picture into the caller's memory. VPL_INVALID_ARGUMENT for a def out of range, VPL_OUT_OF_MEMORY.
+vplResult vplImage_CopyTo(const vplImage* image, const vplPixelsDef* pixels);
+
 // True if pictures can be written to a file of this name: its extension is .png, .hdr, .pfm or, where OpenEXR
 // is built in, .exr.
 bool vplImage_CanWrite(const char* path);
@@ -61,12 +88,12 @@ const char* vplImage_GetExtensions(void);
 // VPL_OUT_OF_MEMORY.
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options);
 
-// Encodes the .png file that vplImage_Write would write. Free the bytes with vplPng_Free.
-vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* options, uint8_t** bytesOut,
-                             size_t* sizeOut);
+// Encodes the file that vplImage_Write would write under the name, such as ".png". Free the bytes with vplBytes_Free.
+vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
+                          uint8_t** bytesOut, size_t* sizeOut);
 
-// Frees the bytes from vplImage_EncodePng. NULL is allowed.
-void vplPng_Free(vplContext* context, uint8_t* bytes);
+// Frees the bytes from vplImage_Encode. NULL is allowed.
+void vplBytes_Free(vplContext* context, uint8_t* bytes);
 
 // Reads .png, .jpg, .bmp and .tga (sRGB, decoded to linear), .hdr, .pfm and, where OpenEXR is built in, .exr.
 // VPL_INVALID_ARGUMENT for another extension, VPL_FILE_ERROR, VPL_PARSE_ERROR, VPL_OUT_OF_MEMORY.
@@ -254,8 +281,6 @@ vplResult vplImage_HeatmapOf(const vplImage* a, const vplImage* b, const vplHeat
 // The same for VPL_HEAT_DIFFERENCE: black is 0, white is `scale` and more (0: the largest difference).
 vplResult vplImage_Heatmap(const vplImage* a, const vplImage* b, float scale, vplImage** imageOut);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

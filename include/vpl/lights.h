@@ -5,9 +5,7 @@
 
 #include <vpl/visibility.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 #define VPL_MAX_STEPS (1 << 20)
 
@@ -435,8 +433,6 @@ typedef struct vplShadeLight {
 // Source: Keller, Instant Radiosity, 1997, section 3.
 int vplSampleAreaLights(const vplEmission* emission, int count, vplShadeLight* out);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

@@ -8,9 +8,7 @@
 
 #include <limits.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 typedef enum vplMethod {
     VPL_METHOD_INSTANT_RADIOSITY = 0, // Franchi and Ferrante, Virtual Point Lights
@@ -259,6 +257,9 @@ typedef struct vplRenderOptions {
     vplRadiosityOptions radiosity;
     vplSequenceOptions sequence;
     vplStopOptions stop;
+    // Replaces the scene's camera of output.camera and its path; NULL (default): that camera. It is read when a render
+    // starts. Plan files do not hold it.
+    const vplCameraDef* view;
     vplProgressFcn* progress; // called with the progress; NULL (default): never
     void* progressUser;       // passed to progress
     char problem[512];        // why the last vplRenderOptions_Set failed; empty if it did not
@@ -268,6 +269,17 @@ typedef struct vplRenderOptions {
 
 // Every option at its default.
 vplRenderOptions vplDefaultRenderOptions(void);
+
+// Options on the heap, at their defaults, for languages that do not know the struct: they are read and written by the
+// functions below. vplRenderOptions_Create returns NULL when out of memory; NULL may be destroyed.
+vplRenderOptions* vplRenderOptions_Create(vplContext* context);
+void vplRenderOptions_Destroy(vplContext* context, vplRenderOptions* options);
+
+// The same as assigning vplRenderOptions.progress and progressUser.
+void vplRenderOptions_SetProgress(vplRenderOptions* options, vplProgressFcn* progress, void* user);
+
+// vplRenderOptions.problem.
+const char* vplRenderOptions_GetProblem(const vplRenderOptions* options);
 
 // Sets an option by its name on the command line, without dashes: vplRenderOptions_Set(&o, "particles",
 // "200"). VPL_INVALID_ARGUMENT if there is no such option or the value is not one of its values: then nothing
@@ -341,8 +353,6 @@ const vplOption* vplGetOptions(int* countOut);
 // NULL if there is none of that name.
 const vplOption* vplFindOption(const char* name);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

@@ -7,9 +7,7 @@
 
 #include <vpl/options.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 enum {
     VPL_MAX_PLAN_STAGES = 24,
@@ -181,8 +179,6 @@ vplResult vplPlan_Write(const vplPlan* plan, const vplScene* scene, const char* 
 vplResult vplRenderOptions_Load(vplContext* context, const char* path, vplRenderOptions* options,
                                 uint64_t* sceneHashOut);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

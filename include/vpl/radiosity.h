@@ -8,9 +8,7 @@
 #include <vpl/image.h>
 #include <vpl/raster.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 // ---- sides of patches: the unknowns of the radiosity equations
 
@@ -381,8 +379,6 @@ vplPatchPriorityDef vplDefaultPatchPriorityDef(void);
 // within one call only. VPL_INVALID_ARGUMENT for a wrong cookie or missing irradiance.
 vplResult vplFindPatchPriority(const vplPatchMesh* mesh, const vplPatchPriorityDef* def, float* priorityOut);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

@@ -12,9 +12,7 @@
 
 #include <vpl/vecmath.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 enum {
     VPL_LANES = 16,        // fragments per block: 4 x 4 pixels, lane i at (i % 4, i / 4)
@@ -219,8 +217,6 @@ vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user,
 vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user,
                            vplRasterStats* statsOut);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

@@ -5,9 +5,7 @@
 
 #include <vpl/plan.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 // Results of stages that frames of a sequence share: the geometry, and for SSVP and radiosity reflective
 // maps, lights, clusters, patches and form factors. A result is reused as long as nothing that it depends on
@@ -106,6 +104,19 @@ vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options
 // NULL is allowed.
 void vplLayers_Destroy(vplLayers* layers);
 
+// A layer and the caller's memory that it goes to.
+typedef struct vplTarget {
+    int layer;           // 0: the picture; else one of vplAov
+    vplPixelsDef pixels; // of options.output.width x height
+} vplTarget;
+
+// Renders into the caller's memory: the picture of vplRender, with the same bits, and the layers that the targets name,
+// whatever options.output.aovs says. Where progress cancels the render after a pass, or a budget of time ends it, targets
+// get the picture so far; passesOut (may be NULL) receives its number of passes, 0 if the targets are untouched.
+// statsOut may be NULL. VPL_CANCELLED, VPL_INVALID_ARGUMENT and what vplRender fails with.
+vplResult vplRenderTo(const vplScene* scene, const vplRenderOptions* options, const vplTarget* targets,
+                      int targetCount, int* passesOut, vplRenderStats* statsOut);
+
 // Radiosity's patches as a mesh with colours at its vertices: the light that options.method
 // VPL_METHOD_RADIOSITY finds, direct and indirect, for tools that draw. Written by vplPatchMesh_WritePly; its
 // 8-bit colours are those of pictures of the same exposure (stops). statsOut may be NULL.
@@ -175,8 +186,6 @@ void vplRenderer_Destroy(vplRenderer* renderer);
 // Makes the virtual lights that vplRender uses in its first pass; destroy them with vplLightSet_Destroy.
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

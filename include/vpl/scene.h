@@ -5,9 +5,7 @@
 
 #include <vpl/vecmath.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 // Largest magnitude of a coordinate, size, intensity or radiance. Squares of distances stay finite in float.
 #define VPL_MAX_MAGNITUDE 1e15f
@@ -254,8 +252,6 @@ uint64_t vplScene_GetHash(const vplScene* scene);
 
 vplContext* vplScene_GetContext(const vplScene* scene);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

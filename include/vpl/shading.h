@@ -7,9 +7,7 @@
 #include <vpl/image.h>
 #include <vpl/lights.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 // Lights are summed in float in groups of this many, groups in double: a plain float sum stops growing at
 // 2^24 equal terms.
@@ -227,8 +225,6 @@ typedef struct vplClampLoss {
 vplResult vplEstimateClampLoss(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                                int pointCount, vplClampLoss* lossOut);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

@@ -6,9 +6,7 @@
 
 #include <vpl/base.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 #define VPL_PI 3.14159265358979323846
 
@@ -50,8 +48,6 @@ vplVec3 vplMat4_TransformPoint(const vplMat4* m, vplVec3 p);
 // Transforms the direction d, with w = 0: translation has no effect.
 vplVec3 vplMat4_TransformDirection(const vplMat4* m, vplVec3 d);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

@@ -7,9 +7,7 @@
 #include <vpl/geometry.h>
 #include <vpl/raster.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 #define VPL_MAX_SHADOW_MAP  8192
 #define VPL_MAX_PCF_SAMPLES 256
@@ -276,8 +274,6 @@ bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geo
 void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES]);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

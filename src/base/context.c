@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "base/context.h"
+#include "base/arena.h"
 #include "base/isa.h"
 
 #include <stdarg.h>
@@ -15,6 +15,8 @@
 #endif
 
 enum { CONTEXT_COOKIE = 0x56504c31 };
+
+static const size_t CONTEXT_BYTES = sizeof(vplContext) + VPL_LAST_MESSAGE;
 
 const char* vplGetVersion(void)
 {
@@ -70,12 +72,29 @@ static int defaultWorkerCount(void)
 #endif
 }
 
-vplResult vplContext_Create(const vplContextDef* def, vplContext** contextOut)
+static vplResult checkAbi(const vplContext* draft, int major, int minor)
+{
+    return major == VPL_VERSION_MAJOR && minor == VPL_VERSION_MINOR
+               ? VPL_SUCCESS
+               : vplFail(draft, VPL_INVALID_ARGUMENT,
+                         "vplContext_Create: the program was built with headers of libvpl %d.%d, the library "
+                         "is %s",
+                         major, minor, VPL_VERSION_STRING);
+}
+
+// The public name, for programs that link without the header's macro.
+vplResult(vplContext_Create)(const vplContextDef* def, vplContext** contextOut)
+{
+    return vplContext_CreateForAbi(VPL_VERSION_MAJOR, VPL_VERSION_MINOR, def, contextOut);
+}
+
+vplResult vplContext_CreateForAbi(int major, int minor, const vplContextDef* def, vplContext** contextOut)
 {
     vplContext draft = {.def = def ? *def : vplDefaultContextDef()};
     if (draft.def.cookie != CONTEXT_COOKIE) {
         return VPL_INVALID_ARGUMENT; // not initialised: its log callback cannot be trusted either
     }
+    TRY(checkAbi(&draft, major, minor));
     if (contextOut == NULL) {
         return vplFail(&draft, VPL_INVALID_ARGUMENT, "vplContext_Create: contextOut is NULL");
     }
@@ -93,11 +112,13 @@ vplResult vplContext_Create(const vplContextDef* def, vplContext** contextOut)
                        "vplContextDef.isa is %s, which this machine or build lacks",
                        vplIsa_GetName(draft.isa));
     }
-    vplContext* context = draft.def.alloc(draft.def.allocUser, NULL, 0, sizeof *context);
+    vplContext* context = draft.def.alloc(draft.def.allocUser, NULL, 0, CONTEXT_BYTES);
     if (context == NULL) {
-        return vplFail(&draft, VPL_OUT_OF_MEMORY, "out of memory: %zu bytes for a context", sizeof *context);
+        return vplFail(&draft, VPL_OUT_OF_MEMORY, "out of memory: %zu bytes for a context", CONTEXT_BYTES);
     }
     *context = draft;
+    context->lastMessage = (char*)(context + 1);
+    context->lastMessage[0] = 0;
     *contextOut = context;
     return VPL_SUCCESS;
 }
@@ -106,8 +127,13 @@ void vplContext_Destroy(vplContext* context)
 {
     if (context != NULL) {
         vplFree(context, context->speeds);
-        context->def.alloc(context->def.allocUser, context, sizeof *context, 0);
+        context->def.alloc(context->def.allocUser, context, CONTEXT_BYTES, 0);
     }
+}
+
+const char* vplContext_GetLastMessage(const vplContext* context)
+{
+    return context != NULL ? context->lastMessage : "";
 }
 
 size_t vplContext_GetBytes(const vplContext* context)
@@ -155,9 +181,32 @@ static void makePrintable(char* text)
     }
 }
 
+void vplLogToStderr(void* user, vplLogLevel level, const char* message)
+{
+    static const char* const names[] = {"error", "warning", "note"};
+    if (level < VPL_LOG_INFO || user != NULL) {
+        fprintf(stderr, "libvpl: %s: %s\n", names[level], message);
+    }
+}
+
+// Keeps a message; the middle of one that is too long is left out, because the reason stands at the end.
+static void keep(char* kept, const char* message)
+{
+    const size_t length = strlen(message), half = VPL_LAST_MESSAGE / 2;
+    if (length < VPL_LAST_MESSAGE) {
+        memcpy(kept, message, length + 1);
+    } else {
+        memcpy(kept, message, half - 4);
+        memcpy(kept + half - 4, " ...", 4);
+        memcpy(kept + half, message + length + 1 - half, half);
+        makePrintable(kept); // a character may have lost a part
+    }
+}
+
 static void logArguments(const vplContext* context, vplLogLevel level, const char* format, va_list arguments)
 {
-    if (context == NULL || context->def.log == NULL) {
+    char* kept = context != NULL && level == VPL_LOG_ERROR ? context->lastMessage : NULL;
+    if (context == NULL || (context->def.log == NULL && kept == NULL)) {
         return;
     }
     char start[1024];
@@ -173,7 +222,12 @@ static void logArguments(const vplContext* context, vplLogLevel level, const cha
     va_end(again);
     char* message = all != NULL ? all : start;
     makePrintable(message);
-    context->def.log(context->def.logUser, level, message);
+    if (kept != NULL) {
+        keep(kept, message);
+    }
+    if (context->def.log != NULL) {
+        context->def.log(context->def.logUser, level, message);
+    }
     if (all != NULL) {
         context->def.alloc(context->def.allocUser, all, size, 0);
     }

@@ -16,8 +16,11 @@ typedef struct vplWatch {
     pthread_t thread; // that alone may ask
 } vplWatch;
 
+enum { VPL_LAST_MESSAGE = 4096 };
+
 struct vplContext {
     vplContextDef def;
+    char* lastMessage; // VPL_LAST_MESSAGE bytes behind the context; NULL: none is kept
     vplIsa isa;
     int workerCount;
     // Bytes held now, and the most held at once. Not atomic: parallel sections do not allocate.

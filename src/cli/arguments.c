@@ -32,6 +32,20 @@ static int distance(const char* a, const char* b)
     return row[n];
 }
 
+const char* nearestCommand(const char* word)
+{
+    const char* nearest = NULL;
+    for (int i = 0, least = 3; i < COMMAND_COUNT; i++) {
+        const bool begun = strlen(word) > 1 && strncmp(word, COMMANDS[i].name, strlen(word)) == 0;
+        const int far = begun ? 1 : distance(word, COMMANDS[i].name);
+        if (far < least) {
+            least = far;
+            nearest = COMMANDS[i].name;
+        }
+    }
+    return nearest;
+}
+
 // Returns the command's option that a word, "--name" or "--name=value", names; NULL after complaining.
 static const Option* findOption(const Command* command, const char* word)
 {
@@ -164,6 +178,12 @@ bool parseArguments(int count, const char* const* words, Arguments* arguments)
         } else {
             a.positionals[a.positionalCount++] = words[i];
         }
+    }
+    if (a.output != NULL && strcmp(a.output, "-") == 0 && a.command->bit == RENDER) {
+        a.output = "-.png";
+    }
+    if (a.positionalCount > 0 && strcmp(a.positionals[0], "-") == 0) {
+        a.positionals[0] = "/dev/stdin";
     }
     warnOfUnused(&a);
     if (a.noGround && !a.quiet && a.positionalCount > 0 && !vplIsModelPath(a.positionals[0])) {

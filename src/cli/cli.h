@@ -50,6 +50,9 @@ extern const int COMMAND_COUNT;
 // Returns NULL if no command has that name.
 const Command* findCommand(const char* name);
 
+// The command that a misspelt word may mean; NULL if none is near.
+const char* nearestCommand(const char* word);
+
 // The options and other words of a command line.
 struct Arguments {
     const Command* command;
@@ -95,6 +98,9 @@ bool setOptions(vplRenderOptions* options, const char* words);
 // after complaining.
 bool printHelp(const char* topic, const char* subject);
 
+// Prints what a shell needs to complete command lines: "bash", "zsh" or "fish". Returns false after complaining.
+bool printCompletion(const char* shell);
+
 // One sentence on stderr, starting with "vpl: ".
 #if defined(__GNUC__)
 __attribute__((format(printf, 1, 2)))
@@ -128,10 +134,11 @@ int runOnScene(const Arguments* arguments, SceneWork* work);
 // Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
 int finishOutput(int code);
 
-// A progress bar with the time left, on stderr if that is a terminal. showProgress takes the Progress.
+// Progress with the time left, on stderr: a bar on a terminal, else a line every ten seconds. showProgress takes the
+// Progress.
 typedef struct Progress {
-    double start, lastDrawn;
-    bool visible;
+    double start, last; // seconds; of the last drawing
+    bool quiet, terminal;
 } Progress;
 
 Progress beginProgress(bool quiet);
@@ -153,6 +160,9 @@ int writeJson(json_t* root, int digits, const char* path);
 
 // Writes the statistics of a render as JSON.
 int writeStats(vplContext* context, const char* path, const vplRenderStats* stats);
+
+// True for "-" and for "-.pfm" and the like, which stand for standard output.
+bool isStdout(const char* path);
 
 // Returns true if a file can probably be written there; complains otherwise. Called before hours of
 // rendering.

@@ -101,6 +101,18 @@ static void warnOfDisplay(const Arguments* a)
     }
 }
 
+static int writeToStdout(const vplImage* image, const char* path, const vplWriteOptions* display)
+{
+    uint8_t* bytes;
+    size_t size;
+    const int code = exitCode(vplImage_Encode(image, path, display, &bytes, &size), false);
+    if (code == EXIT_DONE) {
+        fwrite(bytes, 1, size, stdout); // finishOutput reports what fails
+        vplBytes_Free(image->context, bytes);
+    }
+    return code;
+}
+
 // Writes a picture. An automatic exposure is replaced by that of this picture, for those that follow.
 static int writePicture(const Arguments* a, vplImage* image, const char* path, vplWriteOptions* display)
 {
@@ -119,7 +131,8 @@ static int writePicture(const Arguments* a, vplImage* image, const char* path, v
         const bool automatic = chooseDisplay(a).exposure == VPL_EXPOSURE_AUTO;
         complain("exposure %+.2f stops%s", (double)display->exposure, automatic ? " (auto)" : "");
     }
-    return exitCode(vplImage_Write(image, path, display), false);
+    return isStdout(path) ? writeToStdout(image, path, display)
+                          : exitCode(vplImage_Write(image, path, display), false);
 }
 
 static int writeLayers(const vplLayers* layers, const char* path)
@@ -271,6 +284,14 @@ static bool checkFiles(const Arguments* a)
                          files[i].what);
                 return false;
             }
+        }
+        if (i == 0 && isStdout(a->output) && (a->frames[1] >= 0 || a->render.output.aovs != 0)) {
+            complain("-o %s: standard output takes one picture without layers", a->output);
+            return false;
+        }
+        if (i > 0 && files[i].path != NULL && isStdout(files[i].path)) {
+            complain("%s %s: only -o writes to standard output", files[i].option, files[i].path);
+            return false;
         }
         if (i >= 2 && files[i].path != NULL && a->frames[1] >= 0) {
             complain("%s is for one picture, not for --frames", files[i].option);

@@ -20,7 +20,9 @@ const Command COMMANDS[] = {
      "Renders SCENE and writes a picture. Files appear whole or not at all. SCENE is a scene file (.json), "
      "or a mesh (.obj), which gets a camera that fits it, a ground and, if nothing emits, lamps. A PNG file "
      "is "
-     "exposed automatically and tone mapped unless --exposure and --tonemap say otherwise.",
+     "exposed automatically and tone mapped unless --exposure and --tonemap say otherwise. As SCENE, - is "
+     "standard "
+     "input; as FILE, - is a PNG on standard output, and -.pfm, -.hdr or -.exr another format.",
      NULL},
     {"bake", BAKE, 1, runBake, "vpl bake SCENE -o FILE [options]",
      "writes the patches of radiosity as a mesh",
@@ -286,6 +288,8 @@ static void printOverview(void)
     }
     printf("  %-36s %s\n", "vpl help [command]", "explains a command and its options");
     printf("  %-36s %s\n", "vpl help options [subject]", "explains the options of rendering");
+    printf("  %-36s %s\n", "vpl completion bash|zsh|fish",
+           "prints completions for a shell, which it reads at its start");
     printf("  %-36s %s\n", "vpl --version", "prints the version");
     printf("\nExit codes: 0 done; 1 could not (disk, memory, cancelled); 2 wrong usage or bad input.\n");
 }

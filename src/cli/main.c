@@ -180,9 +180,15 @@ int main(int count, char** words)
         const bool done = printHelp(count > 2 ? words[2] : NULL, count > 3 ? words[3] : NULL);
         return finishOutput(done ? EXIT_DONE : EXIT_USAGE);
     }
+    if (strcmp(word, "completion") == 0) {
+        return finishOutput(printCompletion(count > 2 ? words[2] : "") ? EXIT_DONE : EXIT_USAGE);
+    }
     const Command* command = findCommand(word);
     if (command == NULL) {
-        complain("no command \"%s\"; vpl help lists them", word);
+        const char* nearest = nearestCommand(word);
+        complain(nearest != NULL ? "no command \"%s\", did you mean %s?"
+                                 : "no command \"%s\"; vpl help lists them",
+                 word, nearest);
         return EXIT_USAGE;
     }
     return runCommand(command, count, (const char* const*)words);

@@ -22,9 +22,17 @@ static bool isFolderWritable(const char* folder)
     return access(folder, W_OK | X_OK) == 0;
 }
 
+bool isStdout(const char* path)
+{
+    return path[0] == '-' && (path[1] == 0 || path[1] == '.');
+}
+
 bool checkOutput(const char* path)
 {
     struct stat info;
+    if (isStdout(path)) {
+        return true;
+    }
     bool exists = stat(path, &info) == 0;
     const int cause = errno;
     if (exists && S_ISDIR(info.st_mode)) {

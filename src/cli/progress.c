@@ -39,31 +39,34 @@ bool askInterrupts(void* user, double fraction)
 
 Progress beginProgress(bool quiet)
 {
-    return (Progress){1e-3 * wallMs(), 0, !quiet && isatty(STDERR_FILENO)};
+    const double now = 1e-3 * wallMs();
+    return (Progress){now, now, quiet, isatty(STDERR_FILENO)};
 }
 
 bool showProgress(void* user, double fraction)
 {
     Progress* p = user;
-    double time = 1e-3 * wallMs();
-    if (p->visible && time - p->lastDrawn > 0.1 && fraction > 0) {
-        char bar[41];
-        for (int i = 0; i < 40; i++) {
-            bar[i] = i < (int)(40 * fraction) ? '#' : '.';
+    const double time = 1e-3 * wallMs();
+    if (!p->quiet && time - p->last > (p->terminal ? 0.1 : 10) && fraction > 0) {
+        const int left = (int)((time - p->start) * (1 - fraction) / fraction);
+        if (p->terminal) {
+            char bar[41] = "";
+            for (int i = 0; i < 40; i++) {
+                bar[i] = i < (int)(40 * fraction) ? '#' : '.';
+            }
+            fprintf(stderr, "\r[%s] %3d %%  %d:%02d left ", bar, (int)(100 * fraction), left / 60, left % 60);
+            fflush(stderr);
+        } else {
+            complain("%d %%, %d:%02d left", (int)(100 * fraction), left / 60, left % 60);
         }
-        bar[40] = 0;
-        double left = (time - p->start) * (1 - fraction) / fraction;
-        fprintf(stderr, "\r[%s] %3d %%  %d:%02d left ", bar, (int)(100 * fraction), (int)left / 60,
-                (int)left % 60);
-        fflush(stderr);
-        p->lastDrawn = time;
+        p->last = time;
     }
     return !interrupted;
 }
 
 void endProgress(Progress* progress)
 {
-    if (progress->visible && progress->lastDrawn > 0) {
+    if (!progress->quiet && progress->terminal && progress->last > progress->start) {
         fputs("\r\033[K", stderr);
     }
 }

@@ -99,6 +99,19 @@ const char* vplImage_GetExtensions(void)
     return vplHasExr() ? ".png, .hdr, .pfm or .exr" : ".png, .hdr or .pfm (this build has no OpenEXR)";
 }
 
+vplResult vplCheckDisplay(vplContext* context, const char* type, float exposure, vplToneMap tonemap)
+{
+    if (!(fabsf(exposure) <= 64 || exposure == VPL_EXPOSURE_AUTO)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "%s.exposure is %g, must be in [-64, 64] or VPL_EXPOSURE_AUTO", type,
+                       (double)exposure);
+    }
+    return (int)tonemap >= 0 && tonemap <= VPL_TONEMAP_AGX
+               ? VPL_SUCCESS
+               : vplFail(context, VPL_INVALID_ARGUMENT, "%s.tonemap is %d, no vplToneMap", type,
+                         (int)tonemap);
+}
+
 static vplResult encode(const Format* format, const vplImage* image, const char* what,
                         const vplWriteOptions* options, vplByteBuffer* buffer)
 {
@@ -107,41 +120,21 @@ static vplResult encode(const Format* format, const vplImage* image, const char*
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "vplWriteOptions was not made by vplDefaultWriteOptions");
     }
-    if (!(fabsf(settings.exposure) <= 64 || settings.exposure == VPL_EXPOSURE_AUTO)) {
-        return vplFail(image->context, VPL_INVALID_ARGUMENT,
-                       "vplWriteOptions.exposure is %g, must be in [-64, 64] or VPL_EXPOSURE_AUTO",
-                       (double)settings.exposure);
-    }
-    if (settings.tonemap < VPL_TONEMAP_NONE || settings.tonemap > VPL_TONEMAP_AGX) {
-        return vplFail(image->context, VPL_INVALID_ARGUMENT, "vplWriteOptions.tonemap is %d, no vplToneMap",
-                       (int)settings.tonemap);
-    }
+    TRY(vplCheckDisplay(image->context, "vplWriteOptions", settings.exposure, settings.tonemap));
     TRY(vplImage_RequireFinite(image, what));
     TRY(format->encode(image, &settings, buffer));
     return buffer->failed ? VPL_OUT_OF_MEMORY : VPL_SUCCESS;
 }
 
-vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
+vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
+                          uint8_t** bytesOut, size_t* sizeOut)
 {
-    const Format* format = findFormat(path);
-    if (!vplImage_CanWrite(path)) {
+    if (!vplImage_CanWrite(name)) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
-                       "%s: unknown picture format; the name must end in %s", path, vplImage_GetExtensions());
+                       "%s: unknown picture format; the name must end in %s", name, vplImage_GetExtensions());
     }
     vplByteBuffer buffer = {.context = image->context};
-    vplResult result = encode(format, image, path, options, &buffer);
-    if (result == VPL_SUCCESS) {
-        result = vplWriteFile(image->context, path, buffer.bytes, buffer.size);
-    }
-    vplFree(image->context, buffer.bytes);
-    return result;
-}
-
-vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* options, uint8_t** bytesOut,
-                             size_t* sizeOut)
-{
-    vplByteBuffer buffer = {.context = image->context};
-    vplResult result = encode(findFormat(".png"), image, "PNG", options, &buffer);
+    const vplResult result = encode(findFormat(name), image, name, options, &buffer);
     if (result != VPL_SUCCESS) {
         vplFree(image->context, buffer.bytes);
         return result;
@@ -151,9 +144,19 @@ vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* optio
     return VPL_SUCCESS;
 }
 
-void vplPng_Free(vplContext* context, uint8_t* bytes)
+void vplBytes_Free(vplContext* context, uint8_t* bytes)
 {
     vplFree(context, bytes);
+}
+
+vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
+{
+    uint8_t* bytes;
+    size_t size;
+    TRY(vplImage_Encode(image, path, options, &bytes, &size));
+    const vplResult result = vplWriteFile(image->context, path, bytes, size);
+    vplBytes_Free(image->context, bytes);
+    return result;
 }
 
 // ---- layers

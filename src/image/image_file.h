@@ -8,11 +8,22 @@
 
 #include "base/file.h"
 
-enum { VPL_WRITE_COOKIE = 0x56504c32, VPL_REINHARD_COOKIE = 0x56504c33, VPL_HEATMAP_COOKIE = 0x56504c48 };
+enum {
+    VPL_WRITE_COOKIE = 0x56504c32,
+    VPL_REINHARD_COOKIE = 0x56504c33,
+    VPL_HEATMAP_COOKIE = 0x56504c48,
+    VPL_PIXELS_COOKIE
+};
 
 // Encoders append a file to the buffer. The caller checks buffer->failed.
 typedef vplResult vplEncodeFcn(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
 vplEncodeFcn vplEncodePng, vplEncodeHdr, vplEncodePfm, vplEncodeExr;
+
+// Makes the codes of an 8-bit picture, three bytes a pixel, after exposure and tone map. Free them with vplFree.
+vplResult vplMakeCodes(const vplImage* image, const vplWriteOptions* options, uint8_t** codesOut);
+
+// Fails unless exposure and tone map are in their ranges.
+vplResult vplCheckDisplay(vplContext* context, const char* type, float exposure, vplToneMap tonemap);
 
 // Decoders read a whole file. `path` is for messages.
 typedef vplResult vplDecodeFcn(vplContext* context, const char* path, const uint8_t* bytes, size_t size,

@@ -38,65 +38,19 @@ static void append(void* buffer, void* bytes, int size)
     vplByteBuffer_Append(buffer, bytes, (size_t)size);
 }
 
-// Applies exposure and tone map to `display`, a copy of the picture.
-static vplResult applyDisplay(const vplImage* image, const vplWriteOptions* options, vplImage* display)
-{
-    const size_t count = 3 * (size_t)image->width * (size_t)image->height;
-    float exposure = options->exposure;
-    if (exposure == VPL_EXPOSURE_AUTO) {
-        exposure = 0;
-        if (options->tonemap != VPL_TONEMAP_REINHARD) {
-            TRY(vplImage_AutoExposure(image, &exposure));
-        }
-    }
-    const float gain = (float)vplExp(exposure * 0.69314718055994530942);
-    for (size_t i = 0; i < count; i++) {
-        display->pixels[i] = exposure == 0 ? image->pixels[i] : gain * image->pixels[i];
-    }
-    vplReinhardDef def = vplDefaultReinhardDef();
-    def.skipBlack = true;
-    if (options->tonemap == VPL_TONEMAP_REINHARD) {
-        return vplToneMap_Reinhard(display, &def);
-    }
-    if (options->tonemap == VPL_TONEMAP_ACES) {
-        vplToneMap_Aces(display);
-    } else if (options->tonemap == VPL_TONEMAP_AGX) {
-        vplToneMap_Agx(display);
-    }
-    return VPL_SUCCESS;
-}
-
-static vplResult encodeCodes(const vplImage* display, vplByteBuffer* buffer)
-{
-    const size_t count = 3 * (size_t)display->width * (size_t)display->height;
-    uint8_t* codes = vplAlloc(display->context, count, 1);
-    if (codes == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    vplSrgbTable table;
-    vplSrgbTable_Fill(&table);
-    vplSrgbTable_Encode(&table, display->pixels, count, codes);
-    const int written =
-        stbi_write_png_to_func(append, buffer, display->width, display->height, 3, codes, 3 * display->width);
-    vplFree(display->context, codes);
-    return written ? VPL_SUCCESS
-                   : vplFail(display->context, VPL_OUT_OF_MEMORY, "out of memory while encoding a PNG");
-}
-
 vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
 {
     if ((size_t)image->width * (size_t)image->height > INT_MAX / 6) { // stb counts bytes in int
         return vplFail(image->context, VPL_LIMIT, "a PNG of %dx%d pixels is too large; write .pfm instead",
                        image->width, image->height);
     }
-    vplImage* display;
-    TRY(vplImage_Create(image->context, image->width, image->height, &display));
-    vplResult result = applyDisplay(image, options, display);
-    if (result == VPL_SUCCESS) {
-        result = encodeCodes(display, buffer);
-    }
-    vplImage_Destroy(display);
-    return result;
+    uint8_t* codes;
+    TRY(vplMakeCodes(image, options, &codes));
+    const int written =
+        stbi_write_png_to_func(append, buffer, image->width, image->height, 3, codes, 3 * image->width);
+    vplFree(image->context, codes);
+    return written ? VPL_SUCCESS
+                   : vplFail(image->context, VPL_OUT_OF_MEMORY, "out of memory while encoding a PNG");
 }
 
 vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)

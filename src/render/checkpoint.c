@@ -3,6 +3,7 @@
 // VPLSTATE, a header, the options as text, the sums that the picture is made from, and a checksum. Before the
 // first pass of a plan that replaces another there are no sums. Reading checks every size and value.
 #include "base/file.h"
+#include "base/hash.h"
 #include "reference/path_trace.h"
 #include "reference/sparse_paths.h"
 #include "render/renderer.h"
@@ -26,7 +27,7 @@ static const char MAGIC[8] = {'V', 'P', 'L', 'S', 'T', 'A', 'T', 'E'};
 
 typedef struct Header {
     uint32_t version, textBytes; // of the options, a multiple of 4
-    uint64_t scene;              // vplScene_GetHash
+    uint64_t scene;              // hashScene
     uint32_t width, height, parts;
     uint32_t passes, samples; // done; samples of path tracing
     uint32_t truth;           // pixels that tell the error; 0: there are none
@@ -141,13 +142,22 @@ static bool isTruthValid(const vplRenderer* r)
 
 // ---- saving
 
+// Identifies what is rendered: the scene, and the caller's camera where there is one.
+static uint64_t hashScene(const vplRenderer* r)
+{
+    const uint64_t scene = vplScene_GetHash(r->runner.run.scene);
+    uint32_t view[sizeof r->plan->view / sizeof(uint32_t)];
+    memcpy(view, &r->plan->view, sizeof view);
+    return r->asked.view != NULL ? vplHashWords(scene, view, sizeof view / sizeof *view) : scene;
+}
+
 static Header describe(const vplRenderer* r, const vplByteBuffer* text)
 {
     const vplOutputOptions* o = &r->plan->options.output;
     const uint32_t parts = r->done > 0 ? partsOf(r->plan) : 0;
     Header h = {.version = VERSION,
                 .textBytes = (uint32_t)text->size,
-                .scene = vplScene_GetHash(r->runner.run.scene),
+                .scene = hashScene(r),
                 .width = (uint32_t)o->width,
                 .height = (uint32_t)o->height,
                 .parts = parts,
@@ -303,9 +313,9 @@ static vplResult checkRender(const Loading* l)
     const vplRenderer* r = l->renderer;
     const Header* h = &l->header;
     const vplContext* context = r->runner.run.context;
-    if (h->scene != vplScene_GetHash(r->runner.run.scene)) {
+    if (h->scene != hashScene(r)) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "%s: saved with another scene, or the scene was changed since", l->path);
+                       "%s: saved with another scene or view, or the scene was changed since", l->path);
     }
     vplByteBuffer text = {.context = r->runner.run.context};
     vplReplayList(r->plan, &text);

@@ -3,6 +3,7 @@
 #include "render/options.h"
 
 #include "base/arena.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,6 +29,31 @@ vplRenderOptions vplDefaultRenderOptions(void)
 #include <vpl/options.def>
     o.cookie = OPTIONS_COOKIE;
     return o;
+}
+
+vplRenderOptions* vplRenderOptions_Create(vplContext* context)
+{
+    vplRenderOptions* options = vplAlloc(context, 1, sizeof *options);
+    if (options != NULL) {
+        *options = vplDefaultRenderOptions();
+    }
+    return options;
+}
+
+void vplRenderOptions_Destroy(vplContext* context, vplRenderOptions* options)
+{
+    vplFree(context, options);
+}
+
+void vplRenderOptions_SetProgress(vplRenderOptions* options, vplProgressFcn* progress, void* user)
+{
+    options->progress = progress;
+    options->progressUser = user;
+}
+
+const char* vplRenderOptions_GetProblem(const vplRenderOptions* options)
+{
+    return options->problem;
 }
 
 const vplOption* vplGetOptions(int* countOut)
@@ -110,6 +136,9 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
     }
     for (int i = 0; i < OPTION_COUNT; i++) {
         TRY(checkOption(context, o, &OPTIONS[i]));
+    }
+    if (o->view != NULL) {
+        return vplScene_CheckCamera(scene, "vplRenderOptions.view->", o->view);
     }
     if (cameras == 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "the scene has no camera");

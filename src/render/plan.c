@@ -176,7 +176,11 @@ static vplResult sampleEmitters(vplPlan* p, int wanted)
 static vplResult pose(const vplScene* scene, vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
-    TRY(vplScene_PoseCamera(scene, o->output.camera, o->sequence.frame, &p->camera));
+    if (o->view != NULL) {
+        p->camera = *o->view;
+    } else {
+        TRY(vplScene_PoseCamera(scene, o->output.camera, o->sequence.frame, &p->camera));
+    }
     p->view = vplView_Create(&p->camera, o->output.width, o->output.height);
     p->emitterCount = vplScene_GetEmitterCount(scene);
     vplEmitterDef* emitters = vplArena_Alloc(p->arena, (size_t)p->emitterCount, sizeof *emitters);

@@ -86,6 +86,67 @@ vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options
     return render(scene, options, NULL, layersOut, statsOut);
 }
 
+// ---- into the caller's memory
+
+static vplResult checkTargets(const vplScene* scene, const vplTarget* targets, int count, int* aovsOut)
+{
+    *aovsOut = 0;
+    for (int i = 0; i < count; i++) {
+        const int layer = targets[i].layer;
+        if (layer != 0 && ((layer & VPL_AOV_ALL) != layer || (layer & (layer - 1)) != 0)) {
+            return vplFail(vplScene_GetContext(scene), VPL_INVALID_ARGUMENT,
+                           "vplRenderTo: targets[%d].layer is %d, must be 0 or one vplAov", i, layer);
+        }
+        *aovsOut |= layer;
+    }
+    return VPL_SUCCESS;
+}
+
+// Copies each layer to the target that asks for it. Layers lie behind the picture in the order of vplAov.
+static vplResult copyLayers(const vplLayers* layers, int aovs, const vplTarget* targets, int count)
+{
+    for (int i = 0; i < count; i++) {
+        const int before =
+            targets[i].layer > 0 ? 1 + __builtin_popcount((unsigned)(aovs & (targets[i].layer - 1))) : 0;
+        TRY(vplImage_CopyTo(layers->layers[before].image, &targets[i].pixels));
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplRenderTo(const vplScene* scene, const vplRenderOptions* options, const vplTarget* targets,
+                      int targetCount, int* passesOut, vplRenderStats* statsOut)
+{
+    vplRenderOptions o = *options;
+    vplLayers* layers = NULL;
+    vplRenderer* r;
+    if (passesOut != NULL) {
+        *passesOut = 0;
+    }
+    TRY(checkTargets(scene, targets, targetCount, &o.output.aovs));
+    TRY(vplRenderer_Create(scene, &o, &r));
+    vplResult result = VPL_SUCCESS;
+    for (bool done = false; !done && result == VPL_SUCCESS;) {
+        result = vplRenderer_Step(r, &done);
+    }
+    const int passes = vplRenderer_GetPassCount(r);
+    if (result == VPL_SUCCESS || (result == VPL_CANCELLED && passes > 0)) {
+        const vplResult ended = result;
+        r->asked.progress =
+            ended == VPL_CANCELLED ? NULL : r->asked.progress; // it would cancel the layers, too
+        result = vplRenderer_Finish(r, NULL, &layers, statsOut);
+        result = result == VPL_SUCCESS ? copyLayers(layers, o.output.aovs, targets, targetCount) : result;
+        if (result == VPL_SUCCESS) {
+            result = ended;
+            if (passesOut != NULL) {
+                *passesOut = passes;
+            }
+        }
+    }
+    vplLayers_Destroy(layers);
+    vplRenderer_Destroy(r);
+    return result;
+}
+
 // ---- other results of the same stages
 
 // Opens a renderer of the options' picture by a method, of which only some stages will be run: no time or error ends it.

@@ -119,6 +119,10 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
         return VPL_OUT_OF_MEMORY;
     }
     r->asked = *options;
+    if (options->view != NULL) {
+        r->view = *options->view;
+        r->asked.view = &r->view;
+    }
     vplResolveQuality(&r->asked);
     r->start = start;
     r->watched = start;

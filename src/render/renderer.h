@@ -29,6 +29,7 @@ typedef struct vplErrorParts {
 struct vplRenderer {
     vplRunner runner;
     vplRenderOptions asked; // by the caller
+    vplCameraDef view;      // a copy of the caller's, to which asked.view points
     vplPlan* plan;          // under way
     bool coarse;            // its picture only serves until a better plan has one
     vplImage* base;         // all of the picture; direct light alone where passes add the rest

@@ -179,11 +179,16 @@ void vplScene_GetOrigin(const vplScene* scene, double originOut[3])
     memcpy(originOut, scene->origin, sizeof scene->origin);
 }
 
+vplResult vplScene_CheckCamera(const vplScene* scene, const char* subject, const vplCameraDef* def)
+{
+    TRY(requireCookie(scene, "vplCameraDef", def->cookie == CAMERA_COOKIE));
+    return vplScene_ReportFault(scene, subject, vplCheckCamera(def));
+}
+
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut)
 {
     const vplCamera camera = {.def = *def};
-    TRY(requireCookie(scene, "vplCameraDef", def->cookie == CAMERA_COOKIE));
-    TRY(vplScene_ReportFault(scene, "vplCameraDef.", vplCheckCamera(def)));
+    TRY(vplScene_CheckCamera(scene, "vplCameraDef.", def));
     return append(scene, LIST(scene, camera, cameras), &camera, indexOut);
 }
 

@@ -82,6 +82,9 @@ vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);
 
+// Checks a camera def and its cookie; the message begins with `subject`.
+vplResult vplScene_CheckCamera(const vplScene* scene, const char* subject, const vplCameraDef* def);
+
 // Logs a fault, if there is one, as "<subject><field> <text>"; fails if there is one.
 vplResult vplScene_ReportFault(const vplScene* scene, const char* subject, vplFault fault);
 

@@ -11,7 +11,7 @@ wrong() {
 }
 
 wrong "no command"
-wrong "no command \"rendr\"" rendr
+wrong "no command \"rendr\", did you mean render?" rendr
 wrong "no command \"frob\"" help frob
 wrong "needs a scene file" render
 wrong "needs a scene file" lights
@@ -169,3 +169,49 @@ succeeds HelpListsCommands "$vpl" help
 check HelpNamesExitCodes grep -q '^Exit codes: 0' "$scratch/stdout"
 refuses GrowingPassesNeedAnEnd 2 "grow-from needs passes, budget or max-error" \
     "$vpl" render "$room" -o "$out/a.pfm" --method keller --grow-from 4
+
+# ---- shells
+
+wrong "did you mean info?" inf
+wrong "completion is for bash, zsh or fish" completion tcsh
+wrong "one picture without layers" render "$room" -o - --frames 0:2
+wrong "only -o writes to standard output" render "$room" -o "$png" --stats -
+# completes WANTED WORDS...: bash offers WANTED, a word, for the last word of a command line.
+completes() {
+    wanted=$1
+    shift
+    bash -c '. "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _vpl; printf "%s\n" "${COMPREPLY[@]}"' "$scratch/completion" "$@" |
+        grep -qx -- "$wanted"
+}
+for shell in bash zsh fish; do
+    succeeds "Completion_${shell}_IsPrinted" "$vpl" completion $shell
+    cp "$scratch/stdout" "$scratch/completion-$shell"
+done
+cp "$scratch/completion-bash" "$scratch/completion"
+if command -v bash >/dev/null; then
+    check CompletionKnowsCommands completes render vpl re
+    check CompletionKnowsOptions completes --particles vpl render a.json --part
+    check CompletionKnowsChoices completes keller vpl render --method kel
+    check CompletionKnowsShells completes fish vpl completion f
+fi
+for shell in zsh fish; do # where they are installed
+    ! command -v $shell >/dev/null || check "Completion_${shell}_IsRead" $shell -n "$scratch/completion-$shell"
+done
+
+# ---- standard input and output
+
+small="--method direct --size 16x9"
+from_stdin() {
+    "$vpl" render "$room" -o "$scratch/by-name.pfm" $small && "$vpl" render - -o "$scratch/by-stdin.pfm" $small <"$room" &&
+        cmp "$scratch/by-name.pfm" "$scratch/by-stdin.pfm"
+}
+to_stdout() {
+    for format in png pfm hdr; do
+        "$vpl" render "$room" -o "$scratch/by-name.$format" $small &&
+            "$vpl" render "$room" -o -.$format $small | cmp - "$scratch/by-name.$format" || return 1
+    done
+    "$vpl" render "$room" -o - $small | cmp - "$scratch/by-name.png"
+}
+check SceneComesFromStdin from_stdin
+check PictureGoesToStdout to_stdout
+refuses FullStdoutIsReported 1 "cannot write to standard output" sh -c '"$0" render "$1" -o - --method direct --size 640x360 >/dev/full' "$vpl" "$room"

@@ -98,13 +98,13 @@ static vplResult runPng(Bench* b, const Stage* stage, Outcome* outcome)
     uint8_t* bytes;
     size_t size;
     TRY(needPicture(b));
-    TRY(vplImage_EncodePng(b->picture, &options, &bytes, &size));
+    TRY(vplImage_Encode(b->picture, ".png", &options, &bytes, &size));
     for (size_t i = 0; i < size; i++) {
         outcome->hash = (outcome->hash ^ bytes[i]) * 0x100000001B3u;
     }
     outcome->work = (double)b->picture->width * b->picture->height;
     outcome->unit = "pixels";
-    vplPng_Free(b->context, bytes);
+    vplBytes_Free(b->context, bytes);
     return VPL_SUCCESS;
 }
 

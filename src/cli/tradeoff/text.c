@@ -93,11 +93,11 @@ void addPicture(Text* text, const vplImage* image, const vplWriteOptions* option
 {
     uint8_t* bytes = NULL;
     size_t size = 0;
-    if (vplImage_EncodePng(image, options, &bytes, &size) != VPL_SUCCESS) {
+    if (vplImage_Encode(image, ".png", options, &bytes, &size) != VPL_SUCCESS) {
         text->failed = true;
         return;
     }
     addText(text, "data:image/png;base64,");
     addBase64(text, bytes, size);
-    vplPng_Free(image->context, bytes);
+    vplBytes_Free(image->context, bytes);
 }
