@@ -4,7 +4,7 @@
 
 #include "math/double3.h"
 
-static const double MARGIN = 0.05; // of the picture's shorter side, as obj_scene.c has it
+static const double MARGIN = 0.05; // of the picture's shorter side, as model_look.c has it
 
 typedef struct Model {
     const char* text;

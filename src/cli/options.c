@@ -196,7 +196,7 @@ static const Option OWN[] = {
      "none for stages that are not light",
      NULL},
     {"no-ground", NULL, NULL, ON_SCENES, readFlag, AT(noGround), 0, 0,
-     "no ground under a SCENE that is a mesh (.obj)", NULL},
+     "no ground under a SCENE that is a model (.obj, .ply, .stl, .gltf, .glb)", NULL},
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics are numbered in the same way",

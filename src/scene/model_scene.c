@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reads a model file as a whole scene. Most have no camera, no ground and no light: we add them and log each.
 //
-// The camera looks down along VIEW, a three-quarter view, with a vertical field of view of FIELD. It stands
-// as near as it can with all vertices inside the picture and MARGIN of the picture's shorter side free at
-// each edge. The view falls more steeply than half the field, so the horizon is above the picture: the camera
-// is above all vertices, and a ground of finite size under them covers all of the picture behind the mesh.
-//
 // Let c be the centre of the bounds. Two square lamps with sides of LAMP_SIDE d at the distance d from c face
 // it: the key lamp above the camera's left shoulder and the weak fill lamp to the right. d is LAMP_FAR times
 // the distance from c to the eye, or more where a lamp would otherwise be in the picture. The key lamp's
@@ -15,10 +10,8 @@
 #include "math/double3.h"
 #include "math/scalar.h"
 #include "scene/model.h"
+#include "scene/model_look.h"
 
-static const double VIEW[3] = {-0.42, -0.38, -0.9}; // of any length
-static const double FIELD = 26 * VPL_PI / 180;
-static const double MARGIN = 0.05;
 static const double LAMP_FAR = 0.6, LAMP_SIDE = 0.5;
 static const vplRgb GROUND = {0.3f, 0.3f, 0.3f}; // darker than materials that are not known
 
@@ -38,184 +31,10 @@ vplModelSceneDef vplDefaultModelSceneDef(void)
     return (vplModelSceneDef){16.0 / 9, true, true, MODEL_SCENE_COOKIE};
 }
 
-// Half a field of view: its slopes at the edges of the picture, and without the margin.
-typedef struct Field {
-    double slopes[2], inner[2]; // to the right and upwards
-} Field;
-
-// The view of the mesh. Right is horizontal; right, up and ahead are unit vectors at right angles.
-typedef struct Look {
-    double centre[3], radius; // of the bounds of the vertices
-    double low[3], high[3];   // the bounds
-    double most[2][2];        // what the edges of the picture bound (see fit)
-    double right[3], up[3], ahead[3];
-    double eye[3];            // along right, up and ahead from the centre
-    double nearest, farthest; // least and greatest depth of a vertex from the centre
-} Look;
-
-static void normalize3(const double a[3], double out[3])
-{
-    const double length = sqrt(vplDot3(a, a));
-    for (int k = 0; k < 3; k++) {
-        out[k] = a[k] / length;
-    }
-}
-
-// out = centre + x right + y up + z ahead
-static void place(const Look* l, const double at[3], double out[3])
-{
-    for (int k = 0; k < 3; k++) {
-        out[k] = l->centre[k] + (at[0] * l->right[k] + at[1] * l->up[k] + at[2] * l->ahead[k]);
-    }
-}
-
-// gcc 12 for aarch64 fails to compile fmin and fmax in the loops below.
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
-// Called for all vertices of all objects.
-typedef void VertexFcn(Look* l, const double inner[2], const double p[3]);
-
-static void forVertices(const vplScene* scene, Look* l, const double inner[2], VertexFcn* call)
-{
-    for (int o = 0; o < scene->objectCount; o++) {
-        const vplMeshDef* mesh = &scene->meshes[scene->objects[o].mesh];
-        const vplAffine world = vplAffine_FromMat4(&scene->objects[o].transform);
-        for (int i = 0; i < mesh->vertexCount; i++) {
-            double at[3], p[3];
-            vplToDouble3(mesh->positions[i], at);
-            for (int k = 0; k < 3; k++) {
-                p[k] = world.m[k][3] + vplDot3(world.m[k], at);
-            }
-            call(l, inner, p);
-        }
-    }
-}
-
-static void addToBounds(Look* l, const double inner[2], const double p[3])
-{
-    (void)inner;
-    for (int k = 0; k < 3; k++) {
-        l->low[k] = smaller(l->low[k], p[k]);
-        l->high[k] = larger(l->high[k], p[k]);
-    }
-}
-
-static void measure(Look* l, const vplScene* scene)
-{
-    double half[3];
-    for (int k = 0; k < 3; k++) {
-        l->low[k] = INFINITY;
-        l->high[k] = -INFINITY;
-    }
-    forVertices(scene, l, NULL, addToBounds);
-    for (int k = 0; k < 3; k++) {
-        l->centre[k] = 0.5 * (l->low[k] + l->high[k]);
-        half[k] = 0.5 * (l->high[k] - l->low[k]);
-    }
-    l->radius = sqrt(vplDot3(half, half));
-}
-
-static Field fieldOf(double aspect)
-{
-    double sine, cosine;
-    vplSinCos(FIELD / 2, &sine, &cosine);
-    const double upwards = sine / cosine, margin = 2 * MARGIN * upwards * fmin(aspect, 1);
-    return (Field){{aspect * upwards, upwards}, {aspect * upwards - margin, upwards - margin}};
-}
-
-// Finds the eye. A vertex at (x, z), z its depth, is left of the right edge of a picture of slope s, seen
-// from (a, e), if x - a <= s (z - e), and right of the left edge if a - x <= s (z - e). Let A be the greatest
-// x - s z of all vertices and B the greatest -x - s z. Then A <= a - s e and B <= -a - s e: their sum bounds
-// e, and a = (A - B) / 2 serves every such e. The same holds upwards. The nearest eye has the greatest e
-// within both bounds. A third bound keeps the eye away from a needle that points at it.
-static void addToFit(Look* l, const double inner[2], const double p[3])
-{
-    double from[3];
-    for (int k = 0; k < 3; k++) {
-        from[k] = p[k] - l->centre[k];
-    }
-    const double depth = vplDot3(from, l->ahead), across[2] = {vplDot3(from, l->right), vplDot3(from, l->up)};
-    for (int k = 0; k < 2; k++) {
-        l->most[k][0] = larger(l->most[k][0], across[k] - inner[k] * depth);
-        l->most[k][1] = larger(l->most[k][1], -across[k] - inner[k] * depth);
-    }
-    l->nearest = smaller(l->nearest, depth);
-    l->farthest = larger(l->farthest, depth);
-}
-
-static void fit(Look* l, const vplScene* scene, const double inner[2])
-{
-    for (int k = 0; k < 4; k++) {
-        l->most[k / 2][k % 2] = -INFINITY;
-    }
-    l->nearest = INFINITY;
-    l->farthest = -INFINITY;
-    forVertices(scene, l, inner, addToFit);
-    l->eye[2] = l->nearest - 0.125 * l->radius;
-    for (int k = 0; k < 2; k++) {
-        l->eye[k] = 0.5 * (l->most[k][0] - l->most[k][1]);
-        l->eye[2] = smaller(l->eye[2], -(l->most[k][0] + l->most[k][1]) / (2 * inner[k]));
-    }
-}
-
-static Look lookAt(const vplScene* scene, const Field* field)
-{
-    Look l;
-    measure(&l, scene);
-    normalize3(VIEW, l.ahead);
-    normalize3((double[3]){-VIEW[2], 0, VIEW[0]}, l.right);
-    vplCross3(l.right, l.ahead, l.up);
-    fit(&l, scene, field->inner);
-    // Bounds too small for the transform of a lamp are taken as a point, which no camera can look at.
-    for (int k = 0; k < 3 && l.radius < 2e-15; k++) {
-        l.eye[k] = 0;
-    }
-    return l;
-}
-
-// A rectangle under the mesh that holds the mesh and all of the ground that the picture shows.
-typedef struct Ground {
-    double centre[3], ahead[3]; // ahead is horizontal
-    double halfWidth, halfLength;
-    double nearest, most; // depths from the eye at the lower and upper edge of the picture
-} Ground;
-
-static Ground groundUnder(const Look* l, const Field* field)
-{
-    Ground g;
-    double eye[3];
-    place(l, l->eye, eye);
-    normalize3((double[3]){l->ahead[0], 0, l->ahead[2]}, g.ahead);
-    // The mesh may have a face at its bottom: the ground is lower by a little, also where floats are coarse.
-    g.centre[1] = l->low[1] - fmax(1e-3 * l->radius, fabs(l->low[1]) * 0x1p-22);
-    const double fall = -l->ahead[1], level = l->up[1], slope = field->slopes[1];
-    g.nearest = (eye[1] - g.centre[1]) / (fall + slope * level);
-    g.most = (eye[1] - g.centre[1]) / (fall - slope * level);
-    const double start = l->eye[1] * fall + l->eye[2] * level; // of the eye, along g.ahead from the centre
-    const double first = fmin(start + g.nearest * (level - slope * fall), -l->radius);
-    const double last = fmax(start + g.most * (level + slope * fall), l->radius);
-    g.halfLength = 0.5 * 1.05 * (last - first);
-    g.halfWidth = 1.05 * fmax(g.most * field->slopes[0], fabs(l->eye[0]) + l->radius);
-    for (int k = 0; k < 3; k += 2) {
-        g.centre[k] = l->centre[k] + l->eye[0] * l->right[k] + 0.5 * (first + last) * g.ahead[k];
-    }
-    return g;
-}
-
-// ---- what is added
-
 typedef struct Adder {
     vplScene* scene;
     const char* path;
-    const Look* look;
+    const vplModelLook* look;
 } Adder;
 
 // Fails if there is a fault in what was to be added: "a camera can look at: its".
@@ -230,12 +49,12 @@ static vplResult requireFit(const Adder* a, const char* purpose, vplFault fault)
                          a->path, c[0], c[1], c[2], a->look->radius, purpose, fault.field, fault.text);
 }
 
-static vplResult addCamera(const Adder* a, const Ground* ground)
+static vplResult addCamera(const Adder* a, const vplModelGround* ground)
 {
-    const Look* l = a->look;
+    const vplModelLook* l = a->look;
     double eye[3], target[3], nearest = l->nearest - l->eye[2], most = l->farthest - l->eye[2];
-    place(l, l->eye, eye);
-    place(l, (double[3]){l->eye[0], l->eye[1], 0}, target);
+    vplModelLook_Place(l, l->eye, eye);
+    vplModelLook_Place(l, (double[3]){l->eye[0], l->eye[1], 0}, target);
     if (ground != NULL) {
         nearest = fmin(nearest, ground->nearest);
         most = fmax(most, ground->most);
@@ -243,7 +62,7 @@ static vplResult addCamera(const Adder* a, const Ground* ground)
     vplCameraDef def = vplDefaultCameraDef();
     def.eye = vplRound3(eye);
     def.target = vplRound3(target);
-    def.fovY = FIELD;
+    def.fovY = VPL_MODEL_FIELD;
     def.near = 0.5 * nearest;
     def.far = 1.1 * most;
     TRY(requireFit(a, "a camera can look at: its", vplCheckCamera(&def)));
@@ -260,7 +79,7 @@ static vplResult addQuad(const Adder* a, const char* name, const double centre[3
     vplObjectDef object = vplDefaultObjectDef();
     double front[3];
     vplCross3(x, y, front);
-    normalize3(front, front);
+    vplNormalize3(front, front);
     for (int k = 0; k < 3; k++) {
         object.transform.m[k] = (float)(2 * x[k]);
         object.transform.m[4 + k] = (float)(2 * y[k]);
@@ -273,7 +92,7 @@ static vplResult addQuad(const Adder* a, const char* name, const double centre[3
     return vplScene_AddObject(a->scene, &object, NULL);
 }
 
-static vplResult addGround(const Adder* a, const Ground* g)
+static vplResult addGround(const Adder* a, const vplModelGround* g)
 {
     double x[3], y[3];
     for (int k = 0; k < 3; k++) {
@@ -305,7 +124,7 @@ static vplResult addPoint(const Adder* a, const double position[3], double dista
 static vplResult addPointLamp(const Adder* a, double distance)
 {
     double position[3];
-    normalize3(LAMPS[0].to, position);
+    vplNormalize3(LAMPS[0].to, position);
     for (int k = 0; k < 3; k++) {
         position[k] = a->look->centre[k] + distance * position[k];
     }
@@ -331,15 +150,15 @@ typedef struct Axes {
 static Axes axesOf(const Lamp* lamp)
 {
     Axes a;
-    normalize3(lamp->to, a.to);
-    normalize3((double[3]){-a.to[2], 0, a.to[0]}, a.x);
+    vplNormalize3(lamp->to, a.to);
+    vplNormalize3((double[3]){-a.to[2], 0, a.to[0]}, a.x);
     vplCross3(a.x, a.to, a.y);
     return a;
 }
 
 // The least distance of the lamps at which all their corners are above the upper edge of the picture. That
 // edge is a plane through the eye, and a corner's height above it grows with the lamp's distance.
-static double leastDistance(const Look* l, double slope)
+static double leastDistance(const vplModelLook* l, double slope)
 {
     double normal[3], least = 0;
     for (int k = 0; k < 3; k++) {
@@ -374,7 +193,7 @@ static vplResult addLamp(const Adder* a, const Lamp* lamp, double distance)
 
 static vplResult addLight(const Adder* a, double slope, bool areaLight)
 {
-    const Look* l = a->look;
+    const vplModelLook* l = a->look;
     const double distance =
         fmax(fmax(LAMP_FAR * sqrt(vplDot3(l->eye, l->eye)), 2 * l->radius), 1.01 * leastDistance(l, slope));
     if (!areaLight) {
@@ -422,12 +241,12 @@ static vplResult fill(vplScene* scene, const char* path, const vplModelSceneDef*
     const bool camera = scene->cameraCount == 0, ground = camera && def->ground;
     // Displays and signal lamps of a glTF model glow with 1 at most; they do not light it.
     const bool light = !emits(scene, camera && vplModelKindOf(path) == VPL_MODEL_GLTF ? 1 : 0);
-    const Field field = fieldOf(def->aspect);
+    const vplModelField field = vplModelField_Find(def->aspect);
     if (!light && !camera) {
         return VPL_SUCCESS;
     }
-    const Look look = lookAt(scene, &field);
-    const Ground under = groundUnder(&look, &field);
+    const vplModelLook look = vplModelLook_Find(scene, &field);
+    const vplModelGround under = vplModelGround_Find(&look, &field);
     const Adder adder = {scene, path, &look};
     TRY(camera ? addCamera(&adder, ground ? &under : NULL) : VPL_SUCCESS);
     TRY(ground ? addGround(&adder, &under) : VPL_SUCCESS);
