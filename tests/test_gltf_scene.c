@@ -108,6 +108,31 @@ TEST_ALONE(MaterialsOfOneNameStayApart)
     closeDesk(&d);
 }
 
+// ---- a file with all of it
+
+TEST_ALONE(EverythingIsTheSameInBothForms)
+{
+    Desk d;
+    vplScene *text = NULL, *binary = NULL;
+    openDesk(&d);
+    assert_int_equal(vplScene_Load(d.context, "tests/data/gltf/everything.gltf", &text), VPL_SUCCESS);
+    assert_int_equal(vplScene_Load(d.context, "tests/data/gltf/everything.glb", &binary), VPL_SUCCESS);
+    if (d.said[0] != 0) {
+        fail_msg("%s", d.said);
+    }
+    assert_true(vplScene_GetHash(text) == vplScene_GetHash(binary));
+    assert_int_equal(vplScene_GetMeshCount(text), 4);
+    assert_int_equal(vplScene_GetObjectCount(text), 6);
+    assert_int_equal(vplScene_GetTextureCount(text), 2);
+    assert_int_equal(vplScene_GetEmitterCount(text), 1);
+    int keys;
+    vplScene_GetCameraPath(text, 0, &keys);
+    assert_int_equal(keys, 49);
+    vplScene_Destroy(text);
+    vplScene_Destroy(binary);
+    closeDesk(&d);
+}
+
 // ---- textures
 
 // A TGA picture of 2x1 texels, blue green red alpha each.

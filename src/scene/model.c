@@ -51,7 +51,8 @@ static vplResult readMesh(vplScene* scene, vplText* bytes, vplReadMeshFcn* read,
     vplMaterialDef material = vplDefaultMaterialDef(); // unnamed
     vplRawMesh raw = {.file = bytes->file, .arena = vplArena_Create(scene->context)};
     vplArena* scratch = vplArena_Create(scene->context);
-    vplResult result = read(bytes, scratch, scene->materialCount, &raw);
+    vplResult result = vplArena_Check(scratch);
+    result = result == VPL_SUCCESS ? read(bytes, scratch, scene->materialCount, &raw) : result;
     vplArena_Destroy(scratch);
     material.diffuse = raw.colors != NULL ? (vplRgb){1, 1, 1} : material.diffuse;
     result = result == VPL_SUCCESS ? vplScene_AdoptMaterial(scene, &material, NULL) : result;
