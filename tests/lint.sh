@@ -19,7 +19,7 @@ floatConversionOverflow:src/raster/setup.h
 uninitvar:src/cli/calibration.c
 uninitvar:src/geometry/bvh_split.c
 uninitvar:src/geometry/triangle.c
-uninitvar:src/scene/obj_scene.c
+uninitvar:src/scene/model_look.c
 uninitStructMember:src/geometry/trace.c
 # The block stays in the structure.
 memleak:src/cli/tradeoff/text.c

@@ -24,6 +24,15 @@ static vplResult readMeshes(Attempt* a)
     return vplScene_LoadObj(a->scene, scenes[a->variant ? a->variant : 1], NULL);
 }
 
+static vplResult readModels(Attempt* a)
+{
+    static const char* const scenes[] = {"tests/data/gltf/everything.glb", "tests/data/gltf/everything.gltf",
+                                         "tests/data/ply/odd/more-elements.ply",
+                                         "tests/data/ply/odd/normals-nan.ply",
+                                         "tests/data/stl/odd/upper-case-name.STL"};
+    return vplScene_Load(a->context, scenes[a->variant], &a->scene);
+}
+
 static vplResult openRoom(Attempt* a, const char* path)
 {
     TRY(vplScene_Load(a->context, path, &a->scene));
@@ -440,6 +449,7 @@ static vplResult encodePng(Attempt* a)
 // clang-format off
 EVERY_FAILED_ALLOCATION(AJsonScene, readJson, "png", 1)
 EVERY_FAILED_ALLOCATION(TheObjReader, readMeshes, "png", 3)
+EVERY_FAILED_ALLOCATION(TheReadersOfModels, readModels, "png", 5)
 EVERY_FAILED_ALLOCATION(AGeometry, buildBall, "png", 1)
 EVERY_FAILED_ALLOCATION(ARenderToPng, renderAndWrite, "png", 4)
 EVERY_FAILED_ALLOCATION(ARenderToHdr, renderAndWrite, "hdr", 1)

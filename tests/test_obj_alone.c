@@ -4,7 +4,7 @@
 
 #include "math/double3.h"
 
-static const double MARGIN = 0.05; // of the picture's shorter side, as obj_scene.c has it
+static const double MARGIN = 0.05; // of the picture's shorter side, as model_look.c has it
 
 typedef struct Model {
     const char* text;
@@ -78,7 +78,7 @@ static void see(const Frame* f, const double p[3], double out[3])
 static vplScene* load(Desk* d, const char* text, double aspect, bool ground)
 {
     vplScene* scene = NULL;
-    vplObjSceneDef def = vplDefaultObjSceneDef();
+    vplModelSceneDef def = vplDefaultModelSceneDef();
     def.aspect = aspect;
     def.ground = ground;
     openDesk(d);
@@ -276,7 +276,7 @@ TEST_ALONE(APointLightStandsInPlaceOfTheLampsIfWanted)
 {
     Desk d;
     vplScene* scene = NULL;
-    vplObjSceneDef def = vplDefaultObjSceneDef();
+    vplModelSceneDef def = vplDefaultModelSceneDef();
     def.areaLight = false;
     openDesk(&d);
     writeText(d.obj, MODELS[2].text);
@@ -315,7 +315,7 @@ TEST_ALONE(EveryMethodLightsAnObjAlone)
 TEST_ALONE(ABadObjSceneDefIsRefused)
 {
     static const double aspects[] = {0, -1, 1e-7, 1e7, NAN, INFINITY};
-    vplObjSceneDef def = vplDefaultObjSceneDef();
+    vplModelSceneDef def = vplDefaultModelSceneDef();
     vplScene* scene = NULL;
     Desk d;
     openDesk(&d);
@@ -324,11 +324,11 @@ TEST_ALONE(ABadObjSceneDefIsRefused)
         def.aspect = aspects[i];
         assert_int_equal(vplScene_LoadFor(d.context, d.obj, &def, &scene), VPL_INVALID_ARGUMENT);
     }
-    assert_int_equal(countOf(d.said, "vplObjSceneDef.aspect is "), 6);
+    assert_int_equal(countOf(d.said, "vplModelSceneDef.aspect is "), 6);
     def.aspect = 1;
     def.cookie = 0;
     assert_int_equal(vplScene_LoadFor(d.context, d.obj, &def, &scene), VPL_INVALID_ARGUMENT);
-    assert_int_equal(countOf(d.said, "vplObjSceneDef was not made by its default function"), 1);
+    assert_int_equal(countOf(d.said, "vplModelSceneDef was not made by its default function"), 1);
     assert_null(scene);
     closeDesk(&d);
 }

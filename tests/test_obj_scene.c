@@ -208,7 +208,7 @@ TEST_ALONE(AnObjAloneGetsACameraAGroundAndLamps)
         writeText(d.obj, texts[i]);
         assert_int_equal(vplScene_Load(d.context, d.obj, &scene), VPL_SUCCESS);
         assert_int_equal(countOf(d.said, "warning: "), 4);
-        assert_int_equal(countOf(d.said, "a.obj: an OBJ file has no camera; it looks from ("), 1);
+        assert_int_equal(countOf(d.said, "a.obj: the file has no camera; one looks from ("), 1);
         assert_int_equal(countOf(d.said, "a.obj: it stands on a grey ground of "), 1);
         assert_int_equal(countOf(d.said, "a.obj: nothing emits light; a square "), 2);
         static const char* const names[] = {"a.obj", "ground", "key lamp", "fill lamp"};

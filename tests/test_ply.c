@@ -178,6 +178,40 @@ TEST(VerticesAreSharedWhereColoursAgree, 1)
     closeMesh(m);
 }
 
+// The reader takes the file as a mesh: its triangles, normals and sRGB colours.
+TEST(WhatIsWrittenIsReadBack, 1)
+{
+    vplPatchMesh* m;
+    char folder[] = "/tmp/vpl-ply-XXXXXX", path[64];
+    Ply ply = bake(context, &m);
+    vplScene* scene = NULL;
+    int index = -1;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.ply", folder);
+    FILE* file = fopen(path, "wb");
+    assert_int_equal(fwrite(ply.bytes, 1, ply.size, file), ply.size);
+    fclose(file);
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    assert_int_equal(vplScene_LoadMesh(scene, path, &index), VPL_SUCCESS);
+    const vplMeshDef* mesh = vplScene_GetMesh(scene, index);
+    assert_int_equal(mesh->triangleCount, ply.faceCount);
+    for (int i = 0; i < 3 * mesh->triangleCount; i++) {
+        const int from = cornerOf(&ply, i / 3, i % 3);
+        const uint32_t to = mesh->indices[i];
+        const vplVec3 p = vecAt(&ply, from, 0), n = vecAt(&ply, from, 12);
+        assert_memory_equal(&mesh->positions[to], &p, sizeof p);
+        assert_memory_equal(&mesh->normals[to], &n, sizeof n);
+        const uint8_t* code = vertexOf(&ply, from) + 24;
+        assert_true(mesh->colors[to].r == vplSrgb_Decode(code[0] / 255.0f));
+        assert_true(mesh->colors[to].b == vplSrgb_Decode(code[2] / 255.0f));
+    }
+    vplScene_Destroy(scene);
+    unlink(path);
+    assert_int_equal(rmdir(folder), 0);
+    free(ply.bytes);
+    closeMesh(m);
+}
+
 TEST(FilesThatCannotBeAreRefused, 1)
 {
     vplPatchMesh* m = flatMesh(context, frontsOpen);

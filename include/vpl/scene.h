@@ -177,25 +177,26 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut);
 // NULL is allowed.
 void vplScene_Destroy(vplScene* scene);
 
-// Additions to an OBJ file that is a scene by itself. It always gets a camera that fits its vertices.
-typedef struct vplObjSceneDef {
+// Additions to a model file (OBJ, PLY, STL, glTF) that is a scene by itself: a camera that fits its vertices, a ground
+// and a light. A glTF file keeps its own cameras and lights; with a camera of its own it gets no ground.
+typedef struct vplModelSceneDef {
     double aspect;   // of the picture that the vertices fill: width / height, [1e-6, 1e6]; default 16 / 9
     bool ground;     // true (default): a grey ground under the lowest vertex, y being up
     bool areaLight;  // light, if nothing emits; true (default): two square lamps; false: a point light
     bool unlit;      // true: no light is added; default false
-    uint32_t cookie; // set by vplDefaultObjSceneDef
-} vplObjSceneDef;
+    uint32_t cookie; // set by vplDefaultModelSceneDef
+} vplModelSceneDef;
 
-vplObjSceneDef vplDefaultObjSceneDef(void);
+vplModelSceneDef vplDefaultModelSceneDef(void);
 
-// True for a path that ends in .obj, in either case.
-bool vplIsObjPath(const char* path);
+// True for a path that ends in .obj, .ply, .stl, .gltf or .glb, in either case.
+bool vplIsModelPath(const char* path);
 
-// Reads a scene file; examples/scenes/README.md describes the format. A path that ends in .obj is read as one
-// mesh, and what the def adds to it is logged; for other files the def has no effect. VPL_FILE_ERROR,
+// Reads a scene file; examples/scenes/README.md describes the format. A model file (see
+// vplIsModelPath) is a scene, too; what the def adds to it is logged. For other files the def has no effect. VPL_FILE_ERROR,
 // VPL_OUT_OF_MEMORY, VPL_INVALID_ARGUMENT (the def), VPL_LIMIT (more than 256 MiB from a device or a
 // pipe), or VPL_PARSE_ERROR, whose message is "file:line:column:", what was found and what was expected.
-vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplObjSceneDef* def,
+vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplModelSceneDef* def,
                            vplScene** sceneOut);
 
 // The same with the default def.
@@ -257,6 +258,17 @@ vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKe
 // for faces without a material. Unsupported statements are logged once each, as warnings. VPL_FILE_ERROR,
 // VPL_OUT_OF_MEMORY, VPL_LIMIT, or VPL_PARSE_ERROR with "file:line:column:" in its message.
 vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut);
+
+// Reads an OBJ, PLY or STL file, by its ending, as one mesh. A PLY or STL file adds one unnamed grey material, or a white
+// one if the vertices have colours. VPL_INVALID_ARGUMENT for another ending; otherwise as vplScene_LoadObj.
+vplResult vplScene_LoadMesh(vplScene* scene, const char* path, int* indexOut);
+
+// Adds what a model file places as objects: one for an OBJ, PLY or STL file, one for each node of a glTF file that has a
+// mesh, which all nodes that name it share. Each is as the def says (type and mesh have no effect), its own place in the
+// file inside the def's transform; material -1: those of the file. Cameras and lights of the file are left out. The
+// objects are countOut many from *firstOut on (both may be NULL). As vplScene_LoadMesh.
+vplResult vplScene_LoadModel(vplScene* scene, const char* path, const vplObjectDef* def, int* firstOut,
+                             int* countOut);
 
 int vplScene_GetCameraCount(const vplScene* scene);
 int vplScene_GetTextureCount(const vplScene* scene);

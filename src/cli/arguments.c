@@ -190,8 +190,10 @@ bool parseArguments(int count, const char* const* words, Arguments* arguments)
         return false;
     }
     warnOfUnused(&a);
-    if (a.noGround && !a.quiet && a.positionalCount > 0 && !vplIsObjPath(a.positionals[0])) {
-        complain("warning: --no-ground has no effect with %s, only with a mesh (.obj)", a.positionals[0]);
+    if (a.noGround && !a.quiet && a.positionalCount > 0 && !vplIsModelPath(a.positionals[0])) {
+        complain(
+            "warning: --no-ground has no effect with %s, only with a model (.obj, .ply, .stl, .gltf, .glb)",
+            a.positionals[0]);
     }
     *arguments = a;
     return true;

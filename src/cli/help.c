@@ -18,7 +18,9 @@ static const char* const ESSENTIALS[] = {
 const Command COMMANDS[] = {
     {"render", RENDER, 1, runRender, "vpl render SCENE -o FILE [options]", "renders a picture",
      "Renders SCENE and writes a picture. Files appear whole or not at all. SCENE is a scene file (.json), "
-     "or a mesh (.obj), which gets a camera that fits it, a ground and, if nothing emits, lamps. A PNG file "
+     "or a model (.obj, .ply, .stl, .gltf, .glb), which gets a camera that fits it, a ground and, if nothing "
+     "emits, "
+     "lamps, unless a glTF file has its own. A PNG file "
      "is "
      "exposed automatically and tone mapped unless --exposure and --tonemap say otherwise. As SCENE, - is "
      "standard "

@@ -40,7 +40,7 @@ vplContext* openContext(const Arguments* arguments)
 
 vplResult loadScene(const Arguments* a, vplContext* context, vplScene** sceneOut)
 {
-    vplObjSceneDef def = vplDefaultObjSceneDef();
+    vplModelSceneDef def = vplDefaultModelSceneDef();
     def.aspect = (double)a->render.output.width / a->render.output.height;
     def.ground = !a->noGround;
     def.areaLight = a->render.lighting != VPL_LIGHTING_DOCUMENTED; // which has no area lights

@@ -206,7 +206,7 @@ static const Option OWN[] = {
      "none for stages that are not light",
      NULL},
     {"no-ground", NULL, NULL, ON_SCENES, readFlag, AT(noGround), 0, 0,
-     "no ground under a SCENE that is a mesh (.obj)", NULL},
+     "no ground under a SCENE that is a model (.obj, .ply, .stl, .gltf, .glb)", NULL},
     {"environment", "FILE|R,G,B", NULL, ON_SCENES, readText, AT(environment), 0, 0,
      "light from all around instead of the scene's own: a picture of all directions (.hdr, .pfm, .exr; the "
      "middle is -z, "

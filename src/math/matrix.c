@@ -46,6 +46,21 @@ vplMat4 vplAffine_ToMat4(const vplAffine* a)
     return m;
 }
 
+vplAffine vplAffine_Multiply(const vplAffine* outer, const vplAffine* inner)
+{
+    vplAffine a;
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 4; column++) {
+            double sum = column == 3 ? outer->m[row][3] : 0;
+            for (int k = 0; k < 3; k++) {
+                sum += outer->m[row][k] * inner->m[k][column];
+            }
+            a.m[row][column] = sum;
+        }
+    }
+    return a;
+}
+
 // The cofactor matrix; row i is the cross product of the other two columns. Returns the determinant.
 static double cofactors(const double c[3][3], double rows[3][3])
 {

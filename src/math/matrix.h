@@ -13,6 +13,9 @@ typedef struct vplAffine {
 vplAffine vplAffine_FromMat4(const vplMat4* m);
 vplMat4 vplAffine_ToMat4(const vplAffine* a);
 
+// outer * inner: `inner` is applied first.
+vplAffine vplAffine_Multiply(const vplAffine* outer, const vplAffine* inner);
+
 // |det| / (|c0||c1||c2|) of the 3x3 part: 1 for orthogonal columns of any length, 0 for a singular matrix.
 // Independent of scale, unlike |det|.
 double vplAffine_Orthogonality(const vplAffine* a);

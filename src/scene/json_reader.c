@@ -48,17 +48,25 @@ static vplResult parse(vplJsonFile* file)
                    error.line > 0 ? error.line : 1, error.column > 0 ? error.column : 1, error.text);
 }
 
-vplResult vplJsonFile_Open(vplContext* context, const char* name, vplJsonFile* fileOut)
+vplResult vplJsonFile_FromText(vplContext* context, const char* name, char* text, size_t size,
+                               vplJsonFile* fileOut)
 {
-    vplJsonFile file = {.context = context, .name = name};
-    TRY(vplReadFile(context, name, &file.text, &file.size));
+    vplJsonFile file = {.context = context, .name = name, .text = text, .size = size};
     const vplResult result = parse(&file);
     if (result != VPL_SUCCESS) {
-        vplFree(context, file.text);
+        vplFree(context, text);
         return result;
     }
     *fileOut = file;
     return VPL_SUCCESS;
+}
+
+vplResult vplJsonFile_Open(vplContext* context, const char* name, vplJsonFile* fileOut)
+{
+    char* text;
+    size_t size;
+    TRY(vplReadFile(context, name, &text, &size));
+    return vplJsonFile_FromText(context, name, text, size, fileOut);
 }
 
 void vplJsonFile_Close(vplJsonFile* file)

@@ -27,6 +27,10 @@ typedef struct vplJson {
 
 // Reads and parses a file. Duplicate keys, trailing text, NUL bytes and numbers beyond double are errors.
 vplResult vplJsonFile_Open(vplContext* context, const char* name, vplJsonFile* fileOut);
+
+// The same with a text in memory of the context, which becomes the file's, or is freed on failure.
+vplResult vplJsonFile_FromText(vplContext* context, const char* name, char* text, size_t size,
+                               vplJsonFile* fileOut);
 void vplJsonFile_Close(vplJsonFile* file);
 
 vplJson vplJson_Root(const vplJsonFile* file);

@@ -87,6 +87,11 @@ typedef struct vplObjMesh {
     size_t pointCapacity, normalCapacity, texcoordCapacity;
 } vplObjMesh;
 
+// A prefix for the names of a file's materials that no name in the scene has: "room.obj:", or with the number
+// of the mesh, from 1, "room.obj(2):". Files may share material names, and one file may be read twice. NULL when out of
+// memory.
+char* vplScene_MakePrefix(const vplScene* scene, const char* path, vplArena* scratch);
+
 // The three sweeps, in this order.
 vplResult vplObj_Count(vplObj* obj);
 vplResult vplObj_ReadPoints(vplObj* obj);

@@ -38,9 +38,7 @@ static bool isPrefixTaken(const vplScene* scene, const char* prefix)
     return false;
 }
 
-// A prefix for the names of a file's materials that no name in the scene has: "room.obj:", or with the number
-// of the mesh, from 1, "room.obj(2):". Files may share material names, and one file may be read twice.
-static char* makePrefix(const vplScene* scene, const char* path, vplArena* scratch)
+char* vplScene_MakePrefix(const vplScene* scene, const char* path, vplArena* scratch)
 {
     const char* base = vplBaseName(path);
     size_t size = strlen(base) + 24;
@@ -105,7 +103,7 @@ static vplResult addMaterial(vplScene* scene, vplArena* arena, const char* prefi
 // Adds the materials that triangles use, in the order of their first use, and renumbers the triangles.
 static vplResult addMaterials(vplScene* scene, const vplObj* obj, vplObjMesh* mesh)
 {
-    const char* prefix = makePrefix(scene, obj->text.file, obj->scratch);
+    const char* prefix = vplScene_MakePrefix(scene, obj->text.file, obj->scratch);
     if (prefix == NULL) {
         return VPL_OUT_OF_MEMORY;
     }

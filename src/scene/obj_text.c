@@ -117,15 +117,20 @@ static vplResult decodeUtf16(vplText* t)
     return VPL_SUCCESS;
 }
 
+vplResult vplText_Normalise(vplText* text)
+{
+    if (text->size >= 3 && memcmp(text->bytes, "\xEF\xBB\xBF", 3) == 0) { // a byte order mark
+        memset(text->bytes, ' ', 3);
+    }
+    TRY(decodeUtf16(text));
+    return normalise(text);
+}
+
 vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut)
 {
     vplText text = {context, file, NULL, 0};
     TRY(vplReadFile(context, file, &text.bytes, &text.size));
-    if (text.size >= 3 && memcmp(text.bytes, "\xEF\xBB\xBF", 3) == 0) { // a byte order mark
-        memset(text.bytes, ' ', 3);
-    }
-    vplResult result = decodeUtf16(&text);
-    result = result == VPL_SUCCESS ? normalise(&text) : result;
+    const vplResult result = vplText_Normalise(&text);
     if (result != VPL_SUCCESS) {
         vplText_Close(&text);
         return result;

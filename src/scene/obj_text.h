@@ -22,6 +22,9 @@ typedef struct vplWord {
 // Reads a file. Afterwards every line ends with '\n'. A '\v' replaces the end of a line that a backslash
 // continues: it is a blank to readers, but counts as a line. A NUL byte is an error.
 vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut);
+
+// Does the same to a file whose bytes were read.
+vplResult vplText_Normalise(vplText* text);
 void vplText_Close(vplText* text);
 
 // Finds the next line that is not blank or a comment; *at starts at NULL. False at the end.

@@ -71,9 +71,9 @@ void vplScene_DropTextures(vplScene* scene, int count);
 // Ends the creation of a scene: on success stores it in *sceneOut, else destroys it. Returns `result`.
 vplResult vplScene_Deliver(vplScene* scene, vplResult result, vplScene** sceneOut);
 
-// Reads an OBJ file as a whole scene, with a camera, a ground and a light of our own.
-vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
-                                vplScene** sceneOut);
+// Reads a model file as a whole scene, with a camera, a ground and a light of our own.
+vplResult vplScene_LoadModelAlone(vplContext* context, const char* path, const vplModelSceneDef* def,
+                                  vplScene** sceneOut);
 
 // VPL_MAX_MAGNITUDE for fields in double. The float nearest to 1e15 is 1.3e7 below it, so a comparison with that float
 // refuses 1e15 itself.

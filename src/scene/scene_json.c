@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Scene files. There is one function for each type of thing, and it fills the same def that a C program
 // would, so that files and programs share every check. Angles are in degrees in files and in radians in defs.
+#include "scene/model.h"
 #include "scene/scene_json.h"
 
 #include <string.h>
-#include <strings.h>
 
 static const double DEGREE = VPL_PI / 180;
 
@@ -209,27 +209,28 @@ static vplResult loadJson(vplContext* context, const char* path, vplScene** scen
     vplScene* scene;
     TRY(vplScene_Create(context, &scene));
     vplArena* scratch = vplArena_Create(context);
-    vplSceneLoader loader = {.scene = scene, .scratch = scratch, .meshFiles = {.index = {.arena = scratch}}};
+    vplSceneLoader loader = {.scene = scene, .scratch = scratch, .modelFiles = {.index = {.arena = scratch}}};
     const vplResult result = readFile(&loader, path);
     vplArena_Destroy(scratch);
     return vplScene_Deliver(scene, result, sceneOut);
 }
 
-bool vplIsObjPath(const char* path)
-{
-    const size_t length = strlen(path);
-    return length >= 4 && strcasecmp(path + length - 4, ".obj") == 0;
-}
-
-vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplObjSceneDef* def,
+vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplModelSceneDef* def,
                            vplScene** sceneOut)
 {
-    return vplIsObjPath(path) ? vplScene_LoadObjAlone(context, path, def, sceneOut)
-                              : loadJson(context, path, sceneOut);
+    if (vplIsModelPath(path)) {
+        return vplScene_LoadModelAlone(context, path, def, sceneOut);
+    }
+    if (vplForeignEnding(path) != NULL) {
+        return vplFail(context, VPL_PARSE_ERROR,
+                       "%s: %s files are not read; a scene is a JSON file, or a model that ends in %s", path,
+                       vplForeignEnding(path), VPL_MODEL_ENDINGS);
+    }
+    return loadJson(context, path, sceneOut);
 }
 
 vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut)
 {
-    const vplObjSceneDef def = vplDefaultObjSceneDef();
+    const vplModelSceneDef def = vplDefaultModelSceneDef();
     return vplScene_LoadFor(context, path, &def, sceneOut);
 }

@@ -5,14 +5,17 @@
 
 #include "scene/hash_index.h"
 #include "scene/json_reader.h"
+#include "scene/model.h"
 #include "scene/scene.h"
 
 typedef struct vplSceneLoader {
     vplJsonFile json;
     vplArena* scratch;
     vplScene* scene;
-    int materialCount;  // of the scene file itself; those of meshes follow
-    vplNames meshFiles; // paths of the scene's meshes, in their order
+    int materialCount;   // of the scene file itself; those of meshes follow
+    vplNames modelFiles; // paths that objects named so far
+    vplModel* models;    // of those files
+    size_t modelCapacity;
 } vplSceneLoader;
 
 // Reads what a material says of textures and opacity. (scene_json_textures.c)

@@ -79,20 +79,22 @@ static vplResult readTransform(const vplJson* object, vplMat4* out)
     return vplJson_ReportFault(object, fault);
 }
 
-// Reads the file of a mesh, unless an earlier object named the same file.
-static vplResult readMeshFile(vplSceneLoader* l, const char* path, int* out)
+// Reads a model file, unless an earlier object named the same file; *out is its number.
+static vplResult readModelFile(vplSceneLoader* l, const char* path, int* out)
 {
-    const size_t length = strlen(path);
-    *out = vplNames_Find(&l->meshFiles, path, length);
+    const size_t length = strlen(path), count = l->modelFiles.index.count;
+    *out = vplNames_Find(&l->modelFiles, path, length);
     if (*out >= 0) {
         return VPL_SUCCESS;
     }
-    int mesh;
-    TRY(vplScene_LoadObj(l->scene, path, &mesh));
-    return vplNames_Add(&l->meshFiles, path, length, out);
+    vplModel model = {.arena = l->scratch};
+    TRY(vplScene_ReadModel(l->scene, path, false, &model));
+    TRY(vplArena_Reserve(l->scratch, &l->models, &l->modelCapacity, count + 1, sizeof model));
+    l->models[count] = model;
+    return vplNames_Add(&l->modelFiles, path, length, out);
 }
 
-static vplResult readMesh(vplSceneLoader* l, const vplJson* object, int* out)
+static vplResult readModel(vplSceneLoader* l, const vplJson* object, int* out)
 {
     const char* name = NULL;
     const vplJson member = vplJson_Member(object, "file");
@@ -101,12 +103,33 @@ static vplResult readMesh(vplSceneLoader* l, const vplJson* object, int* out)
     if (path == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    const vplResult result =
-        vplIsRegularFile(path)
-            ? readMeshFile(l, path, out)
-            : vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", name, path);
+    vplResult result;
+    if (!vplIsRegularFile(path)) {
+        result = vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", name, path);
+    } else if (!vplIsModelPath(path)) {
+        result = vplJson_Fail(&member, "is \"%.80s\", must end in " VPL_MODEL_ENDINGS, name);
+    } else {
+        result = readModelFile(l, path, out);
+    }
     vplFree(l->json.context, path);
     return result;
+}
+
+// Adds an object for each part of the model, with the same name and material.
+static vplResult addParts(vplSceneLoader* l, const vplJson* object, vplObjectDef* def)
+{
+    int number = 0;
+    TRY(readModel(l, object, &number));
+    const vplModel* model = &l->models[number];
+    const vplAffine outer = vplAffine_FromMat4(&def->transform);
+    for (size_t i = 0; i < model->count; i++) {
+        const vplAffine whole = vplAffine_Multiply(&outer, &model->parts[i].toModel);
+        def->mesh = model->parts[i].mesh;
+        def->transform = vplAffine_ToMat4(&whole);
+        TRY(vplJson_ReportFault(object, vplCheckTransform(&def->transform)));
+        TRY(vplScene_AddObject(l->scene, def, NULL));
+    }
+    return VPL_SUCCESS;
 }
 
 vplResult vplSceneLoader_ReadObject(vplSceneLoader* l, const vplJson* object)
@@ -128,8 +151,5 @@ vplResult vplSceneLoader_ReadObject(vplSceneLoader* l, const vplJson* object)
         TRY(readMaterialReference(l, object, &def.material));
     }
     TRY(readTransform(object, &def.transform));
-    if (mesh) {
-        TRY(readMesh(l, object, &def.mesh));
-    }
-    return vplScene_AddObject(l->scene, &def, NULL);
+    return mesh ? addParts(l, object, &def) : vplScene_AddObject(l->scene, &def, NULL);
 }

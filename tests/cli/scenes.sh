@@ -48,6 +48,33 @@ done <"$scratch/expected"
 equals EveryBrokenObjIsListed "$(ls tests/data/obj/broken/*.obj | wc -l)" "$(wc -l <"$scratch/expected")"
 refuses ObjIsMissing 2 "none.obj: cannot open: No such file" "$vpl" render "$scratch/none.obj" -o "$never"
 
+# Broken PLY, STL and glTF files: the place is line:column, or "byte N" behind a blank.
+for kind in ply stl gltf; do
+    path=tests/data/$kind/broken
+    grep -v '^#' $path/expected.csv | tail -n +2 >"$scratch/expected"
+    while IFS=, read -r file where found expected; do
+        case $where in byte*) where=" $where" ;; esac
+        refuses "Broken_$kind: $file" 2 "vpl: $path/$file:$where: " "$vpl" info --quiet "$path/$file"
+        check "Broken_${kind}_Finds: $file" grep -qF -- "$found" "$scratch/stderr"
+        check "Broken_${kind}_Expects: $file" grep -qF -- "$expected" "$scratch/stderr"
+    done <"$scratch/expected"
+    equals "EveryBroken_${kind}_IsListed" "$(($(ls $path | wc -l) - 1))" "$(wc -l <"$scratch/expected")"
+done
+refuses OtherModelsAreNamed 2 "room.fbx: .fbx files are not read" "$vpl" info room.fbx
+
+# One triangle in each format gives one picture.
+for file in ply/odd/crlf.ply ply/odd/cr-binary.ply stl/odd/solid-binary.stl stl/odd/upper-case-name.STL gltf/odd/binary.glb; do
+    "$vpl" render "tests/data/$file" -o "$out/triangle.pfm" --size 32x24 --method direct --quiet
+    equals "ModelIsRendered: $file" 0 $?
+    [ "$file" != ply/odd/cr-binary.ply ] || continue # its first corner is 1e-44 m elsewhere
+    [ -e "$scratch/triangle.pfm" ] || cp "$out/triangle.pfm" "$scratch/triangle.pfm"
+    check "ModelsHaveTheSameBits: $file" cmp "$out/triangle.pfm" "$scratch/triangle.pfm"
+done
+"$vpl" info tests/data/gltf/odd/range.gltf >"$scratch/stdout" 2>"$scratch/stderr"
+check GltfLightsAreCounted grep -q 'lights  *1 (1 point' "$scratch/stdout"
+check GltfRangeIsWarnedOf grep -q 'range.gltf: 1 lights have a range, which has no effect' "$scratch/stderr"
+rm -f "$out/triangle.pfm"
+
 # A mesh in a scene, and by itself: the program says what it added, unless told to be quiet.
 succeeds InfoOfASceneOfMeshes "$vpl" info tests/data/obj/meshes.json --json
 equals InfoCountsObjectsOfMeshes 3 "$(field "$scratch/stdout" mesh)"
@@ -55,7 +82,7 @@ equals InfoCountsTrianglesOfMeshes 11 "$(tr -d ' \n' <"$scratch/stdout" | sed -n
 succeeds ASceneOfMeshesIsRendered "$vpl" render tests/data/obj/meshes.json -o "$out/meshes.pfm" --size 32x24 --method direct
 "$vpl" render tests/data/obj/square.obj -o "$out/square.pfm" --size 32x24 --method direct 2>"$scratch/said"
 equals ObjAloneIsRendered 0 $?
-check ObjAloneSaysItsCamera grep -q 'square.obj: an OBJ file has no camera; it looks from' "$scratch/said"
+check ObjAloneSaysItsCamera grep -q 'square.obj: the file has no camera; one looks from' "$scratch/said"
 check ObjAloneSaysItsLight grep -q 'square.obj: nothing emits light; a square key lamp of' "$scratch/said"
 check ObjAloneSaysItsGround grep -q 'square.obj: it stands on a grey ground of' "$scratch/said"
 equals ObjAloneSaysNoMore 4 "$(wc -l <"$scratch/said")"
