@@ -80,8 +80,8 @@ check ExamplesNameWhatFailed examples_name_failures
 # Scenes are beside what runs.
 mkdir -p "$scratch/commands/build" "$scratch/commands/examples/scenes"
 cp "$build/vpl" "$scratch/commands/build/vpl"
-cp examples/scenes/* "$scratch/commands/examples/scenes"
-cp examples/scenes/* "$scratch"
+cp -r examples/scenes/* "$scratch/commands/examples/scenes"
+cp -r examples/scenes/* "$scratch"
 
 # blocks README LANGUAGE: writes the blocks of a language to block-1.c, block-2.c and so on, and prints how many.
 blocks() {
