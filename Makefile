@@ -136,6 +136,7 @@ bench: all
 	$(BUILD)/bench/history examples/scenes/room.json
 	$(BUILD)/bench/flicker examples/scenes/room.json instant-radiosity 12
 	$(BUILD)/bench/paraboloid --quick examples/scenes/room.json
+	$(BUILD)/bench/scale
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/patches examples/scenes/room-area.json
 	$(BUILD)/bench/form_factors examples/scenes/room-area.json
