@@ -2,6 +2,7 @@
 // The scene as read-only world-space arrays of triangles.
 #include "base/arena.h"
 #include "geometry/bvh.h"
+#include "geometry/cut_outs.h"
 #include "geometry/formula.h"
 #include "geometry/object_build.h"
 #include "geometry/paint.h"
@@ -13,6 +14,12 @@
 static bool isSmooth(const vplScene* scene, const vplObjectDef* def)
 {
     return def->type == VPL_OBJECT_MESH && scene->meshes[def->mesh].normals != NULL;
+}
+
+// Quads and boxes that let light through are always tested as triangles.
+static bool isCutOut(const vplScene* scene, const vplObjectDef* def)
+{
+    return def->material >= 0 && vplIsCutOut(&scene->materials[def->material]);
 }
 
 // Counts vertices and triangles, and allocates the arrays.
@@ -68,7 +75,7 @@ static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
                                       .triangleCount = shape.triangleCount};
         TRY(vplPlacement_Create(g->context, &def->transform, &object->placement));
         vplBuildObject(b, i);
-        object->byFormula = vplNeedsFormula(object, &shape, b->positions);
+        object->byFormula = !isCutOut(scene, def) && vplNeedsFormula(object, &shape, b->positions);
         if (object->byFormula) {
             b->formulaObjects[g->formulaCount++] = i;
         }
@@ -124,6 +131,7 @@ static vplResult build(const vplScene* scene, vplGeometry* g)
     TRY(vplBuildPaint(scene, g, builder.objects));
     summarise(g);
     TRY(vplMarkCoplanar(g, builder.objects));
+    TRY(vplBuildCutOuts(g)); // last: its tree is not in the arena
     warnOfDistance(g);
     return VPL_SUCCESS;
 }
@@ -168,6 +176,7 @@ void vplGeometry_Destroy(vplGeometry* geometry)
     if (geometry != NULL) {
         vplBvh_Destroy(geometry->rayTree);
         vplReleasePaint(geometry);
+        vplBvh_Destroy(geometry->cutOuts != NULL ? geometry->cutOuts->tree : NULL);
         vplArena_Destroy(geometry->arena);
     }
 }

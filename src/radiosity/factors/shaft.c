@@ -175,7 +175,7 @@ void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFa
     Shaft shaft = {.geometry = g, .a = a, .b = b, .tolerance = tolerance, .out = out};
     addPlanes(&shaft);
     out->count = 0;
-    if (bvh == NULL || bvh->marks != NULL || !search(&shaft, bvh)) {
+    if (bvh == NULL || bvh->marks != NULL || g->cutOuts != NULL || !search(&shaft, bvh)) {
         out->count = -1;
         return;
     }
