@@ -130,16 +130,17 @@ typedef struct vplGeometry {
     // none.
     const int* formulaObjects;
     int formulaCount;
-    vplVec3 boundsMin, boundsMax; // of all positions; both 0 when there are none
-    double origin[3];             // vplScene_GetOrigin: all positions are relative to it
-    double area;                  // of all triangles, square metres
-    double meanReflectance;       // area-weighted, mean of the channels; 0 where there is no area
-    bool emits;                   // some triangle may emit
-    const struct vplPaint* paint; // textures and colours of vertices; NULL: surfaces have one colour each
-    vplEnvironment* environment;  // light from outside; NULL: there is none
-    struct vplBvh* rayTree;       // accelerates rays; NULL: there is none
-    uint64_t scene;               // identifies the scene that it was made of
-    struct vplArena* arena;       // owns the arrays
+    vplVec3 boundsMin, boundsMax;     // of all positions; both 0 when there are none
+    double origin[3];                 // vplScene_GetOrigin: all positions are relative to it
+    double area;                      // of all triangles, square metres
+    double meanReflectance;           // area-weighted, mean of the channels; 0 where there is no area
+    bool emits;                       // some triangle may emit
+    const struct vplPaint* paint;     // textures and colours of vertices; NULL: surfaces have one colour each
+    const struct vplCutOuts* cutOuts; // triangles that let light through; NULL: there are none
+    vplEnvironment* environment;      // light from outside; NULL: there is none
+    struct vplBvh* rayTree;           // of all others; accelerates rays; NULL: there is none
+    uint64_t scene;                   // identifies the scene that it was made of
+    struct vplArena* arena;           // owns the arrays
     vplContext* context;
 } vplGeometry;
 

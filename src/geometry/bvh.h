@@ -135,17 +135,12 @@ bool vplAnyOfTriangles(const vplGeometry* geometry, const vplRay* ray, float tMa
 // vplGeometry_IsOccluded for each ray of a packet: bit i of the result is ray i.
 uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax);
 
-// Sets amount[i] to 0 where ray i is occluded before tMax. Returns the number of rays.
-static inline int vplGeometry_Darken(const vplGeometry* geometry, const vplRayPacket* rays, float tMax,
-                                     float amount[VPL_RAY_PACKET])
-{
-    if (rays->active == 0) {
-        return 0;
-    }
-    for (uint32_t dark = vplGeometry_AreOccluded(geometry, rays, tMax); dark != 0; dark &= dark - 1) {
-        amount[__builtin_ctz(dark)] = 0;
-    }
-    return __builtin_popcount(rays->active);
-}
+// The same for solid triangles only.
+uint32_t vplSolid_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax);
+
+// Multiplies amount[i] by the share of light that ray i brings: 0 where it is occluded before tMax, else 1 or what
+// cut-outs let through. Returns the number of rays.
+int vplGeometry_Darken(const vplGeometry* geometry, const vplRayPacket* rays, float tMax,
+                       float amount[VPL_RAY_PACKET]);
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Based on: Ingo Wald, On Fast Construction of SAH-Based Bounding Volume Hierarchies, RT 2007: ranges of
 // triangles are split where the surface area heuristic, sampled at bins of centroids, is least.
+#include "geometry/cut_outs.h"
 #include "geometry/bvh_build.h"
 #include "geometry/triangle.h"
 
@@ -52,7 +53,7 @@ static void collectChunk(void* data, int chunk, int worker)
     const int first = chunk * VPL_BUILD_CHUNK;
     int count = 0;
     for (int i = first; i < g->triangleCount && i < first + VPL_BUILD_CHUNK; i++) {
-        if (vplCanBeHit(g, i)) {
+        if (vplIsSolid(g, i)) {
             c->builder->items[first + count] = boundItem(g, i);
             c->builder->ids[first + count++] = i;
         }

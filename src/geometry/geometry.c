@@ -2,6 +2,7 @@
 // The scene as read-only world-space arrays of triangles.
 #include "base/arena.h"
 #include "geometry/bvh.h"
+#include "geometry/cut_outs.h"
 #include "geometry/formula.h"
 #include "geometry/object_build.h"
 #include "geometry/paint.h"
@@ -14,6 +15,12 @@
 static bool isSmooth(const vplScene* scene, const vplObjectDef* def)
 {
     return def->type == VPL_OBJECT_MESH && scene->meshes[def->mesh].normals != NULL;
+}
+
+// Quads and boxes that let light through are always tested as triangles.
+static bool isCutOut(const vplScene* scene, const vplObjectDef* def)
+{
+    return def->material >= 0 && vplIsCutOut(&scene->materials[def->material]);
 }
 
 // Counts vertices and triangles, and allocates the arrays.
@@ -66,7 +73,7 @@ static void finishObject(vplGeometry* g, const vplGeometryBuilder* b, int index)
     vplGeometryObject* object = &b->objects[index];
     const vplMeshDef shape = vplShapeOf(b->scene, &b->scene->objects[index]);
     vplBuildObject(b, index);
-    object->byFormula = vplNeedsFormula(object, &shape, b->positions);
+    object->byFormula = !isCutOut(b->scene, &b->scene->objects[index]) && vplNeedsFormula(object, &shape, b->positions);
     if (object->byFormula) {
         b->formulaObjects[g->formulaCount++] = index;
     }
@@ -141,6 +148,7 @@ static vplResult build(const vplScene* scene, vplGeometry* g)
     TRY(vplBuildPaint(scene, g, builder.objects));
     summarise(g);
     TRY(vplMarkCoplanar(g, builder.objects));
+    TRY(vplBuildCutOuts(g)); // last: its tree is not in the arena
     warnOfDistance(g);
     return vplEnvironment_Create(scene, &g->environment);
 }
@@ -185,6 +193,10 @@ bool vplGeometry_CanUpdate(const vplGeometry* g, const vplScene* scene)
                 g->environment == NULL && scene->environment.type == VPL_ENVIRONMENT_NONE;
     for (int i = 0; i < scene->meshCount && same; i++) {
         same = scene->meshes[i].colors == NULL;
+    }
+    same = same && g->cutOuts == NULL;
+    for (int i = 0; i < scene->materialCount && same; i++) {
+        same = !vplIsCutOut(&scene->materials[i]);
     }
     return same && memcmp(g->origin, scene->origin, sizeof g->origin) == 0;
 }
@@ -239,6 +251,7 @@ void vplGeometry_Destroy(vplGeometry* geometry)
         vplBvh_Destroy(geometry->rayTree);
         vplReleasePaint(geometry);
         vplEnvironment_Destroy(geometry->environment);
+        vplBvh_Destroy(geometry->cutOuts != NULL ? geometry->cutOuts->tree : NULL);
         vplArena_Destroy(geometry->arena);
     }
 }

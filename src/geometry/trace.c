@@ -2,7 +2,9 @@
 // Rays through the scene: the tree of triangles finds what is hit, the object's own shape says where.
 #include "base/context.h"
 #include "geometry/bvh.h"
+#include "geometry/cut_outs.h"
 #include "geometry/formula.h"
+#include "geometry/trace.h"
 #include "geometry/triangle.h"
 #include "math/double3.h"
 #include "math/vec.h"
@@ -19,7 +21,7 @@ static void makeBlock(const vplGeometry* g, int first, vplTriangleBlock* block, 
     int32_t ids[VPL_BVH_WIDTH];
     int count = 0;
     for (int i = first; i < first + VPL_BVH_WIDTH && i < g->triangleCount; i++) {
-        if (vplCanBeHit(g, i)) {
+        if (vplIsSolid(g, i)) {
             ids[count++] = i;
         }
     }
@@ -71,6 +73,19 @@ static vplRay shorten(const vplRay* ray, int exponent)
         ray->origin, {ldexpf(d.x, -exponent), ldexpf(d.y, -exponent), ldexpf(d.z, -exponent)}, ray->skip};
 }
 
+void vplTraceOneTree(const vplBvh* bvh, vplIsa isa, const vplRay* ray, float tMax, vplRawHit* hitOut)
+{
+    if (isOrdinary(ray->direction)) {
+        vplGetRayKernels(isa)->closest(bvh, ray, tMax, hitOut);
+        return;
+    }
+    const int exponent = farExponent(ray->direction);
+    const vplRay shorter = shorten(ray, exponent);
+    vplGetRayKernels(isa)->closest(bvh, &shorter, ldexpf(fminf(tMax, FLT_MAX), exponent), hitOut);
+    hitOut->t = ldexpf(hitOut->t, -exponent);
+}
+
+// Tests what is solid.
 static bool isOccluded(const vplGeometry* g, const vplRay* ray, float tMax, bool everyTriangle)
 {
     vplRay shorter;
@@ -89,7 +104,9 @@ static bool isOccluded(const vplGeometry* g, const vplRay* ray, float tMax, bool
 
 bool vplAnyOfTriangles(const vplGeometry* g, const vplRay* ray, float tMax)
 {
-    return isOccluded(g, ray, tMax, true);
+    vplHit hit;
+    return isOccluded(g, ray, tMax, true) ||
+           (g->cutOuts != NULL && vplCutOuts_ClosestHit(g, ray, tMax, &hit));
 }
 
 // ---- hits
@@ -112,8 +129,7 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
     hit->v = raw->b2;
 }
 
-// Locates the hit on a triangle: by the formula of the quad or box that it belongs to, if any.
-static vplHit finishHit(const vplGeometry* geometry, const vplRay* ray, const vplRawHit* raw)
+vplHit vplFinishHit(const vplGeometry* geometry, const vplRay* ray, const vplRawHit* raw)
 {
     const int index = geometry->owners[raw->triangle], face = vplGeometry_FaceOf(geometry, raw->triangle);
     const vplGeometryObject* object = &geometry->objects[index];
@@ -151,7 +167,8 @@ static inline void traceTriangles(const vplGeometry* g, const vplRay* ray, float
     }
 }
 
-bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
+// The closest hit on what is solid.
+static bool closestSolid(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
 {
     vplRawHit raw;
     if (isOrdinary(ray->direction)) {
@@ -167,9 +184,15 @@ bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tes
         return true;
     }
     if (met) {
-        *hitOut = finishHit(g, ray, &raw);
+        *hitOut = vplFinishHit(g, ray, &raw);
     }
     return met;
+}
+
+bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
+{
+    const bool met = closestSolid(g, ray, tMax, tests, hitOut);
+    return g->cutOuts == NULL ? met : vplCutOuts_ClosestHit(g, ray, met ? hitOut->t : tMax, hitOut) || met;
 }
 
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut)
@@ -179,7 +202,9 @@ bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplH
 
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax)
 {
-    return isOccluded(geometry, ray, tMax, false);
+    vplHit hit;
+    return isOccluded(geometry, ray, tMax, false) ||
+           (geometry->cutOuts != NULL && vplCutOuts_ClosestHit(geometry, ray, tMax, &hit));
 }
 
 static bool areOrdinary(const vplRayPacket* rays)
@@ -193,7 +218,7 @@ static bool areOrdinary(const vplRayPacket* rays)
     return (odd & rays->active) == 0;
 }
 
-uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax)
+uint32_t vplSolid_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax)
 {
     if (geometry->rayTree != NULL && geometry->formulaCount == 0 && areOrdinary(rays)) {
         return vplGetRayKernels(geometry->context->isa)->anyPacket(geometry->rayTree, rays, tMax);
@@ -205,6 +230,33 @@ uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket
         hits |= (uint32_t)isOccluded(geometry, &ray, tMax, false) << lane;
     }
     return hits;
+}
+
+uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax)
+{
+    uint32_t hits = vplSolid_AreOccluded(geometry, rays, tMax);
+    for (uint32_t open = geometry->cutOuts != NULL ? rays->active & ~hits : 0; open != 0; open &= open - 1) {
+        const int lane = __builtin_ctz(open);
+        const vplRay ray = vplRayPacket_Get(rays, lane);
+        vplHit hit;
+        hits |= (uint32_t)vplCutOuts_ClosestHit(geometry, &ray, tMax, &hit) << lane;
+    }
+    return hits;
+}
+
+int vplGeometry_Darken(const vplGeometry* geometry, const vplRayPacket* rays, float tMax,
+                       float amount[VPL_RAY_PACKET])
+{
+    if (rays->active == 0) {
+        return 0;
+    }
+    for (uint32_t dark = vplSolid_AreOccluded(geometry, rays, tMax); dark != 0; dark &= dark - 1) {
+        amount[__builtin_ctz(dark)] = 0;
+    }
+    if (geometry->cutOuts != NULL) {
+        vplCutOuts_Veil(geometry, rays, tMax, amount);
+    }
+    return __builtin_popcount(rays->active);
 }
 
 // ---- leaving a surface, shading, bounding boxes

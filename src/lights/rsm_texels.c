@@ -4,6 +4,7 @@
 #include "lights/kernels.h"
 
 #include "base/context.h"
+#include "geometry/cut_outs.h"
 #include "geometry/emission.h"
 #include "geometry/paint.h"
 #include "geometry/triangle.h"
@@ -84,8 +85,9 @@ static vplVec3 meetPlane(const vplReflectiveMap* m, const vplGeometry* g, const 
                   (float)(from[2] + t * way[2] + off * n[2]));
 }
 
-bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
-                             vplHit* hitOut, vplVec3* directionOut)
+// The solid surface that a texel shows.
+static bool getSolidHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
+                        vplHit* hitOut, vplVec3* directionOut)
 {
     const int triangle = map->triangle[texel];
     if (triangle < 0) {
@@ -104,6 +106,34 @@ bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geo
     hit.t = parallel ? vplDot(way, map->forward[0]) : vplLength(way);
     *hitOut = hit;
     return true;
+}
+
+// The cut-out that the ray through a texel's centre meets nearer than tMax, metres.
+static bool getCutOut(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel, float tMax,
+                      vplHit* hitOut, vplVec3* directionOut)
+{
+    const Place p = placeOf(map, texel);
+    const bool parallel = map->emitter.type == VPL_EMITTER_DIRECTIONAL;
+    const vplVec3 side =
+        vplAdd(vplScale((float)p.x, map->right[p.face]), vplScale((float)p.y, map->up[p.face]));
+    const vplVec3 forward = map->forward[p.face];
+    const vplRay ray = {parallel ? vplAdd(map->origin, side) : map->origin,
+                        parallel ? forward : vplNormalize(vplAdd(forward, side)),
+                        {0, 0}};
+    if (!vplCutOuts_ClosestHit(geometry, &ray, tMax, hitOut)) {
+        return false;
+    }
+    *directionOut = ray.direction;
+    return true;
+}
+
+bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
+                             vplHit* hitOut, vplVec3* directionOut)
+{
+    const bool solid = getSolidHit(map, geometry, texel, hitOut, directionOut);
+    return (geometry->cutOuts != NULL &&
+            getCutOut(map, geometry, texel, solid ? hitOut->t : INFINITY, hitOut, directionOut)) ||
+           solid;
 }
 
 bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,

@@ -3,6 +3,7 @@
 // those that need the scene's geometry.
 #include "render/plan.h"
 
+#include "geometry/cut_outs.h"
 #include "geometry/triangle.h"
 #include "render/options.h"
 #include "render/show.h"
@@ -240,10 +241,21 @@ static void chooseRadiosity(vplPlan* p)
     }
 }
 
+enum { CUT_OUT_RAYS = 64 }; // from each pixel, where patches are not drawn
+
+static bool hasCutOuts(const vplScene* scene)
+{
+    bool any = false;
+    for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
+        any = any || vplIsCutOut(vplScene_GetMaterial(scene, i));
+    }
+    return any;
+}
+
 // Decides which kinds of light the picture adds up.
 static void choosePicture(const vplScene* scene, vplPlan* p)
 {
-    const vplRenderOptions* o = &p->options;
+    vplRenderOptions* o = &p->options;
     const vplShowRow* row = &VPL_SHOWS[o->output.show];
     const bool keller = o->method == VPL_METHOD_KELLER;
     const bool lit = (VPL_USE_VIRTUAL_LIGHTS & 1 << o->method) != 0 &&
@@ -252,6 +264,10 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
     p->showsDirect = row->direct && o->method != VPL_METHOD_PATH;
     p->showsVirtual = lit && row->lights && (o->output.show != VPL_SHOW_DIRECT || keller);
     p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
+    if (p->showsPatches && vplShowsLight(o->output.show) && o->radiosity.gather == 0 && hasCutOuts(scene)) {
+        o->radiosity.gather = CUT_OUT_RAYS;
+        vplDecide(p, "gather", "patches cannot be seen through holes: pixels gather their light");
+    }
     p->gathers = o->radiosity.gather > 0 && p->showsPatches && vplShowsLight(o->output.show);
     p->splitsLight = (o->output.aovs & (VPL_AOV_DIRECT | VPL_AOV_INDIRECT)) != 0 &&
                      (p->showsVirtual || p->showsPatches || o->method == VPL_METHOD_PATH);

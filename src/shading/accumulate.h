@@ -92,6 +92,9 @@ static inline void vplFindVisibility(const vplShading* s, vplBlock* b, int clust
     for (int l = 0; l < VPL_LANES; l++) {
         b->visible[l] = 1 - hidden[l];
     }
+    if (cluster >= 0 && s->geometry->cutOuts != NULL) { // maps show what is solid
+        vplVeilFromPoint(s->geometry, &b->points, s->def->clusterShadows[cluster].position, b->visible);
+    }
 }
 
 static inline void vplAddClusters(const vplShading* s, const vplFacingLights* facing, vplBlock* b)

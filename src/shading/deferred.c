@@ -34,6 +34,9 @@ vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster)
         pipeline.planeMask = 15u << VPL_PLANE_TRIANGLE | (shading->smooth ? 7u << VPL_PLANE_NORMAL : 0);
         TRY(vplRaster_Draw(raster, &shading->meshes[i], &pipeline));
     }
+    if (shading->geometry->cutOuts != NULL) {
+        TRY(vplRaster_TileTask(raster, vplShowCutOuts, shading));
+    }
     return vplRaster_TileTask(raster, shading->tileTask, shading);
 }
 

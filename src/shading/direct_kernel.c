@@ -95,6 +95,9 @@ static void shadowEmitter(vplReceiver* receiver, vplRayStarts* starts, const vpl
     for (int l = 0; l < VPL_LANES; l++) {
         amount[l] *= 1 - factor[l];
     }
+    if (s->geometry->cutOuts != NULL) { // maps show what is solid
+        vplVeilFromEmitter(s->geometry, points, emitter, amount);
+    }
 }
 
 void VPL_KERNEL(vplAddEmitters)(const vplShading* s, const vplDirectLight* direct, const vplPoints* points,

@@ -115,7 +115,7 @@ static bool needsPoints(const vplShading* s)
 {
     const vplLightList* list = &s->lights;
     return list->maps != NULL || list->castsRays || vplFindsLightByRays(s) ||
-           (s->smooth && list->clusters != NULL);
+           (list->clusters != NULL && (s->smooth || s->geometry->cutOuts != NULL));
 }
 
 // Copies `count` pixels from elements[0] on into a block. Lanes behind the last repeat the first, and cast no

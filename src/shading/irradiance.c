@@ -120,6 +120,9 @@ bool vplReceiveLight(const vplReceiver* r, const vplShadeLight* light, const vpl
         for (int l = 0; l < VPL_LANES; l++) {
             out->visible[l] *= 1 - factor[l];
         }
+        if (r->shading->geometry->cutOuts != NULL) { // maps show what is solid
+            vplVeilFromPoint(r->shading->geometry, r->points, map->position, out->visible);
+        }
     }
     return true;
 }

@@ -103,7 +103,7 @@ vplResult vplMakeColumns(vplShading* s)
 
 // ---- the strategy
 
-static const vplStrategy* chooseStrategy(const vplShadeDef* def)
+static const vplStrategy* chooseStrategy(const vplShadeDef* def, const vplGeometry* geometry)
 {
     if (def->output == VPL_OUTPUT_BACKGROUND) {
         return &vplBackgroundStrategy;
@@ -111,7 +111,9 @@ static const vplStrategy* chooseStrategy(const vplShadeDef* def)
     if (!vplShowsLight(def->output)) {
         return &vplShowStrategy;
     }
-    if (def->accumulation < VPL_ACCUMULATE_DEFERRED && def->output == VPL_OUTPUT_RADIANCE) {
+    // Cut-outs are put into a G-buffer; multipass and batched pictures have the same bits as deferred ones.
+    if (def->accumulation < VPL_ACCUMULATE_DEFERRED && def->output == VPL_OUTPUT_RADIANCE &&
+        geometry->cutOuts == NULL) {
         return &vplPassesStrategy;
     }
     if ((def->lightCount > 0 || def->gather != NULL) && def->accumulation == VPL_ACCUMULATE_INTERLEAVED &&
@@ -159,7 +161,7 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     shading.image = image;
     shading.shadowRays = &stats.shadowRays;
     shading.arena = vplArena_Create(geometry->context);
-    const vplResult result = shade(&shading, chooseStrategy(def), &stats);
+    const vplResult result = shade(&shading, chooseStrategy(def, geometry), &stats);
     vplArena_Destroy(shading.arena);
     if (result == VPL_SUCCESS && statsOut != NULL) {
         *statsOut = stats;

@@ -120,6 +120,9 @@ void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn
 // Records one pass that writes the G-buffer, and shading->tileTask for each finished tile of it.
 vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster);
 
+// A task of tiles: puts the cut-outs that are seen into the G-buffer and its samples.
+vplTileFcn vplShowCutOuts;
+
 // Makes the columns of the lights, which culling reads, unless each light has a shadow of its own.
 vplResult vplMakeColumns(vplShading* shading);
 
@@ -246,6 +249,11 @@ void vplAddAreaLights(const vplShading* shading, const vplDirectLight* direct, c
 // Adds virtual lights first .. first + count - 1, each with its own shadow if it has one.
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
                            float irradiance[3][VPL_LANES], int64_t* rays);
+
+// Multiply amount by the share of light that cut-outs let through on its way from a place or an emitter to the points.
+void vplVeilFromPoint(const vplGeometry* g, const vplPoints* points, vplVec3 from, float amount[VPL_LANES]);
+void vplVeilFromEmitter(const vplGeometry* g, const vplPoints* points, const vplEmitterRay* emitter,
+                        float amount[VPL_LANES]);
 
 // ---- compensation
 

@@ -3,6 +3,7 @@
 #ifndef VPL_VISIBILITY_DRAWING_H
 #define VPL_VISIBILITY_DRAWING_H
 
+#include "geometry/cut_outs.h"
 #include "math/vec.h"
 
 #include <vpl/geometry.h>
@@ -11,7 +12,8 @@
 static inline vplMesh vplMeshOfObject(const vplGeometry* g, int object)
 {
     const vplGeometryObject* o = &g->objects[object];
-    return (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
+    const uint32_t* indices = g->cutOuts != NULL ? g->cutOuts->indices : g->indices;
+    return (vplMesh){indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
 }
 
 // Slightly more than the distance of the farthest vertex; 1 where there is none.

@@ -5,6 +5,7 @@
 #include "visibility/paraboloid_map.h"
 #include "base/arena.h"
 #include "geometry/bvh.h"
+#include "geometry/cut_outs.h"
 #include "geometry/triangle.h"
 #include "visibility/kernels.h"
 
@@ -149,12 +150,18 @@ bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geo
     const size_t at = (size_t)texel.hemisphere * vplParaboloidMap_Texels(map->size) +
                       vplParaboloidMap_Place(map->size, texel.column, texel.row);
     const int triangle = map->triangles[at];
-    if (triangle < 0) {
-        return false;
-    }
     const vplVec3 d = vplParaboloid_Unproject(x, y);
     const vplVec3 direction = vplAdd(vplAdd(vplScale(d.x, map->right), vplScale(d.y, map->up)),
                                      vplScale(texel.hemisphere == 0 ? d.z : -d.z, map->forward));
+    const vplRay ray = {map->position, direction, {0, 0}};
+    if (geometry->cutOuts != NULL && // the map shows what is solid
+        vplCutOuts_ClosestHit(geometry, &ray, triangle < 0 ? INFINITY : 1 / map->texels[at], hitOut)) {
+        *directionOut = direction;
+        return true;
+    }
+    if (triangle < 0) {
+        return false;
+    }
     vplHit hit = {.t = 1 / map->texels[at],
                   .object = geometry->owners[triangle],
                   .face = vplGeometry_FaceOf(geometry, triangle),

@@ -232,7 +232,7 @@ void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFa
                    .out = out};
     addPlanes(&shaft);
     out->count = 0;
-    if (bvh == NULL || bvh->marks != NULL || !search(&shaft, bvh)) {
+    if (bvh == NULL || bvh->marks != NULL || g->cutOuts != NULL || !search(&shaft, bvh)) {
         out->count = -1;
         return;
     }

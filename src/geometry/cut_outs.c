@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// Based on: Eric Enderton, Erik Sintorn, Peter Shirley and David Luebke, Stochastic Transparency, I3D 2010 (a surface of
+// opacity a stops a ray with probability a); Chris Wyman and Morgan McGuire, Hashed Alpha Testing, I3D 2017 (the random
+// number is a hash of the position). Departs: the bits of the position are hashed, because pictures need not be alike
+// from frame to frame; shadow rays multiply the shares that are let through, which has no noise.
+#include "geometry/cut_outs.h"
+
+#include "base/arena.h"
+#include "base/rng.h"
+#include "geometry/paint_data.h"
+#include "geometry/trace.h"
+#include "geometry/triangle.h"
+#include "scene/texture.h"
+
+#include <string.h>
+
+enum {
+    MOST_LAYERS = 1024,      // that a ray goes through; it ends at the last
+    HASH_STREAM = 0x616c7068 // of random numbers
+};
+
+// ---- opacity
+
+bool vplIsCutOut(const vplMaterialDef* m)
+{
+    return m->opacity < 1 || m->alphaTexture >= 0 || m->alphaFromTexture;
+}
+
+static void lookUp(const vplGeometry* g, int texture, const vplTexturedTriangle* t, const double w[3],
+                   float rgbaOut[4])
+{
+    const vplTextureArea point = {.u = w[0] * t->u[0] + w[1] * t->u[1] + w[2] * t->u[2],
+                                  .v = w[0] * t->v[0] + w[1] * t->v[1] + w[2] * t->v[2]};
+    vplTexture_Lookup(g->paint->textures[texture], &point, rgbaOut);
+}
+
+float vplGeometry_Opacity(const vplGeometry* g, int triangle, vplVec3 point)
+{
+    const vplMaterialDef* m = &g->materials[g->triangleMaterials[triangle]];
+    float opacity = m->opacity;
+    if (m->alphaTexture >= 0 || m->alphaFromTexture) {
+        const vplTriangleCorners corners = vplGeometry_Corners(g, triangle);
+        const vplTexturedTriangle t = vplPaint_Corners(g, triangle);
+        double w[3];
+        float rgba[4];
+        vplTriangle_Barycentrics(corners.corner, point, w);
+        if (m->alphaFromTexture) {
+            lookUp(g, m->texture, &t, w, rgba);
+            opacity *= rgba[3];
+        }
+        if (m->alphaTexture >= 0) {
+            lookUp(g, m->alphaTexture, &t, w, rgba);
+            opacity *= (rgba[0] + rgba[1] + rgba[2]) / 3;
+        }
+    }
+    return m->alphaCutoff > 0 ? (opacity >= m->alphaCutoff ? 1.0f : 0.0f) : opacity;
+}
+
+// Whether the surface stops a ray that meets it there.
+static bool stops(const vplGeometry* g, const vplHit* hit)
+{
+    const float opacity = vplGeometry_Opacity(g, hit->triangle, hit->position);
+    uint32_t counter[4] = {0, 0, 0, (uint32_t)hit->triangle};
+    memcpy(counter, &hit->position, sizeof hit->position);
+    return opacity >= 1 || (opacity > 0 && vplUnitFloat(vplPhilox(counter, HASH_STREAM, 0).v[0]) < opacity);
+}
+
+// ---- rays
+
+// The next cut-out along a ray. On success *at becomes its distance from where the ray first started, and *ray goes on
+// behind it.
+static bool nextLayer(const vplGeometry* g, vplRay* ray, float tMax, float* at, vplHit* hit)
+{
+    vplRawHit raw;
+    vplTraceOneTree(g->cutOuts->tree, g->context->isa, ray, tMax - *at, &raw);
+    if (raw.triangle < 0) {
+        return false;
+    }
+    *hit = vplFinishHit(g, ray, &raw);
+    *at += hit->t;
+    *ray = vplGeometry_Leave(g, hit, ray->direction);
+    hit->t = *at;
+    return *at < tMax;
+}
+
+bool vplCutOuts_ClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, vplHit* hitOut)
+{
+    vplRay rest = *ray;
+    vplHit hit;
+    float at = 0;
+    for (int i = 0; i < MOST_LAYERS && nextLayer(g, &rest, tMax, &at, &hit); i++) {
+        if (stops(g, &hit)) {
+            *hitOut = hit;
+            return true;
+        }
+    }
+    return false;
+}
+
+float vplCutOuts_Transmittance(const vplGeometry* g, const vplRay* ray, float tMax)
+{
+    vplRay rest = *ray;
+    vplHit hit;
+    float at = 0, share = 1;
+    for (int i = 0; i < MOST_LAYERS && share > 0 && nextLayer(g, &rest, tMax, &at, &hit); i++) {
+        share *= 1 - vplGeometry_Opacity(g, hit.triangle, hit.position);
+    }
+    return share;
+}
+
+void vplCutOuts_Veil(const vplGeometry* g, const vplRayPacket* rays, float tMax, float amount[VPL_RAY_PACKET])
+{
+    for (uint32_t active = rays->active; active != 0; active &= active - 1) {
+        const int lane = __builtin_ctz(active);
+        if (amount[lane] > 0) {
+            const vplRay ray = vplRayPacket_Get(rays, lane);
+            amount[lane] *= vplCutOuts_Transmittance(g, &ray, tMax);
+        }
+    }
+}
+
+// ---- building
+
+// Builds the tree of the triangles that `solid`, the inverse of the mask, leaves out.
+static vplResult buildTree(const vplGeometry* g, const uint8_t* is, vplBvh** treeOut)
+{
+    uint8_t* solid = vplAlloc(g->context, (size_t)g->triangleCount, 1);
+    if (solid == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int i = 0; i < g->triangleCount; i++) {
+        solid[i] = !is[i];
+    }
+    const vplCutOuts others = {.is = solid};
+    vplGeometry inverse = *g;
+    inverse.cutOuts = &others;
+    const vplResult result = vplBvh_Create(&inverse, VPL_BRUTE_BLOCKS, treeOut);
+    vplFree(g->context, solid);
+    return result;
+}
+
+vplResult vplBuildCutOuts(vplGeometry* g)
+{
+    bool any = false;
+    for (int i = 0; i < g->triangleCount && !any; i++) {
+        any = vplIsCutOut(&g->materials[g->triangleMaterials[i]]);
+    }
+    if (!any) {
+        return VPL_SUCCESS;
+    }
+    const size_t count = (size_t)g->triangleCount;
+    vplCutOuts* c = vplArena_AllocZero(g->arena, 1, sizeof *c);
+    uint8_t* is = vplArena_Alloc(g->arena, count, 1);
+    uint32_t* indices = vplArena_Copy(g->arena, g->indices, 3 * count, sizeof *indices);
+    TRY(vplArena_Check(g->arena));
+    for (size_t i = 0; i < count; i++) {
+        is[i] = vplIsCutOut(&g->materials[g->triangleMaterials[i]]);
+        if (is[i]) {
+            indices[3 * i + 1] = indices[3 * i + 2] = indices[3 * i];
+        }
+    }
+    vplBvh* tree;
+    TRY(buildTree(g, is, &tree));
+    *c = (vplCutOuts){is, indices, tree};
+    g->cutOuts = c;
+    return VPL_SUCCESS;
+}
