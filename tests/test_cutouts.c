@@ -71,6 +71,23 @@ static vplGeometry* geometryOf(vplScene* scene)
     return g;
 }
 
+TEST(TheMeanOpacityOfALeafIsItsArea, 1)
+{
+    vplScene* scene = emptyScene(context);
+    addQuad(scene, leaf(scene), vplVec(0, 0, 0), 0, 1, 1);
+    vplGeometry* g = geometryOf(scene);
+    double mean = 0;
+    for (int t = 0; t < 2; t++) {
+        vplVec3 corners[3];
+        for (int k = 0; k < 3; k++) {
+            corners[k] = g->positions[g->indices[3 * t + k]];
+        }
+        mean += 0.5 * (double)vplGeometry_MeanOpacity(g, t, corners);
+    }
+    assertNear(mean, LEAF_AREA, 0.02, "mean", 0);
+    vplGeometry_Destroy(g);
+}
+
 // ---- rays
 
 TEST(SolidScenesHaveNoCutOuts, 1)

@@ -15,8 +15,9 @@
 #include <string.h>
 
 enum {
-    MOST_LAYERS = 1024,      // that a ray goes through; it ends at the last
-    HASH_STREAM = 0x616c7068 // of random numbers
+    MOST_LAYERS = 1024,       // that a ray goes through; it ends at the last
+    HASH_STREAM = 0x616c7068, // of random numbers
+    SIDE = 8                  // of a square of points that are averaged
 };
 
 // ---- opacity
@@ -56,13 +57,39 @@ float vplGeometry_Opacity(const vplGeometry* g, int triangle, vplVec3 point)
     return m->alphaCutoff > 0 ? (opacity >= m->alphaCutoff ? 1.0f : 0.0f) : opacity;
 }
 
-// Whether the surface stops a ray that meets it there.
-static bool stops(const vplGeometry* g, const vplHit* hit)
+float vplGeometry_MeanOpacity(const vplGeometry* g, int triangle, const vplVec3 corners[3])
 {
-    const float opacity = vplGeometry_Opacity(g, hit->triangle, hit->position);
+    float sum = 0;
+    if (g->cutOuts == NULL || !g->cutOuts->is[triangle]) {
+        return 1;
+    }
+    for (int i = 0; i < SIDE * SIDE; i++) { // a square folded along its diagonal
+        float u = ((float)(i % SIDE) + 0.5f) / SIDE, v = ((float)(i / SIDE) + 0.25f) / SIDE;
+        if (u + v > 1) {
+            u = 1 - u;
+            v = 1 - v;
+        }
+        const vplVec3 along = vplScale(u, vplSub(corners[1], corners[0]));
+        const vplVec3 across = vplScale(v, vplSub(corners[2], corners[0]));
+        sum += vplGeometry_Opacity(g, triangle, vplAdd(corners[0], vplAdd(along, across)));
+    }
+    return sum / (SIDE * SIDE);
+}
+
+// A number in [0, 1) by the bits of the hit's position.
+static float chanceAt(const vplHit* hit)
+{
     uint32_t counter[4] = {0, 0, 0, (uint32_t)hit->triangle};
     memcpy(counter, &hit->position, sizeof hit->position);
-    return opacity >= 1 || (opacity > 0 && vplUnitFloat(vplPhilox(counter, HASH_STREAM, 0).v[0]) < opacity);
+    return vplUnitFloat(vplPhilox(counter, HASH_STREAM, 0).v[0]);
+}
+
+// A number in [0, 1); those of the rays of a pixel are evenly spaced.
+static float chanceOf(const vplPixelRay* ray, const vplHit* hit)
+{
+    const uint32_t counter[4] = {ray->pixel[0], ray->pixel[1], (uint32_t)hit->object, HASH_STREAM};
+    const float u = vplUnitFloat(vplPhilox(counter, HASH_STREAM, 1).v[0]) + ray->rank;
+    return u < 1 ? u : u - 1;
 }
 
 // ---- rays
@@ -83,18 +110,32 @@ static bool nextLayer(const vplGeometry* g, vplRay* ray, float tMax, float* at, 
     return *at < tMax;
 }
 
-bool vplCutOuts_ClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, vplHit* hitOut)
+// The first layer that stops the ray; `seen` is NULL or the ray as one of a pixel.
+static bool findStop(const vplGeometry* g, const vplRay* ray, const vplPixelRay* seen, float tMax,
+                     vplHit* hitOut)
 {
     vplRay rest = *ray;
     vplHit hit;
     float at = 0;
     for (int i = 0; i < MOST_LAYERS && nextLayer(g, &rest, tMax, &at, &hit); i++) {
-        if (stops(g, &hit)) {
+        const float opacity = vplGeometry_Opacity(g, hit.triangle, hit.position);
+        if (opacity >= 1 ||
+            (opacity > 0 && (seen != NULL ? chanceOf(seen, &hit) : chanceAt(&hit)) < opacity)) {
             *hitOut = hit;
             return true;
         }
     }
     return false;
+}
+
+bool vplCutOuts_ClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, vplHit* hitOut)
+{
+    return findStop(g, ray, NULL, tMax, hitOut);
+}
+
+bool vplCutOuts_FindSeen(const vplGeometry* g, const vplPixelRay* ray, float tMax, vplHit* hitOut)
+{
+    return findStop(g, &ray->ray, ray, tMax, hitOut);
 }
 
 float vplCutOuts_Transmittance(const vplGeometry* g, const vplRay* ray, float tMax)

@@ -25,9 +25,22 @@ static inline bool vplIsSolid(const vplGeometry* g, int triangle)
 // The share of the light that a triangle stops at a point of it, [0, 1]; 1 for solid ones.
 float vplGeometry_Opacity(const vplGeometry* geometry, int triangle, vplVec3 point);
 
+// The mean over a part of a triangle with these corners, by 64 points.
+float vplGeometry_MeanOpacity(const vplGeometry* geometry, int triangle, const vplVec3 corners[3]);
+
 // Finds the closest cut-out that stops a ray before tMax; whether one does where its opacity is a share is decided by the
 // bits of the point. False if there is none.
 bool vplCutOuts_ClosestHit(const vplGeometry* geometry, const vplRay* ray, float tMax, vplHit* hitOut);
+
+// A ray among others through one pixel, of which each object shall stop its share.
+typedef struct vplPixelRay {
+    vplRay ray;
+    uint32_t pixel[2]; // numbers that differ from pixel to pixel and from picture to picture
+    float rank;        // of the ray among those of the pixel, [0, 1), evenly spaced
+} vplPixelRay;
+
+// The same, decided by pixel, object and rank.
+bool vplCutOuts_FindSeen(const vplGeometry* geometry, const vplPixelRay* ray, float tMax, vplHit* hitOut);
 
 // The share of the light along a ray that cut-outs before tMax let through.
 float vplCutOuts_Transmittance(const vplGeometry* geometry, const vplRay* ray, float tMax);

@@ -129,7 +129,8 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
     hit->v = raw->b2;
 }
 
-vplHit vplFinishHit(const vplGeometry* geometry, const vplRay* ray, const vplRawHit* raw)
+// Locates the hit on a triangle: by the formula of the quad or box that it belongs to, if any.
+static inline vplHit finishHit(const vplGeometry* geometry, const vplRay* ray, const vplRawHit* raw)
 {
     const int index = geometry->owners[raw->triangle], face = vplGeometry_FaceOf(geometry, raw->triangle);
     const vplGeometryObject* object = &geometry->objects[index];
@@ -143,6 +144,11 @@ vplHit vplFinishHit(const vplGeometry* geometry, const vplRay* ray, const vplRaw
     hit.face = face;
     hit.triangle = raw->triangle;
     return hit;
+}
+
+vplHit vplFinishHit(const vplGeometry* geometry, const vplRay* ray, const vplRawHit* raw)
+{
+    return finishHit(geometry, ray, raw);
 }
 
 // The closest hit on what is tested as triangles.
@@ -184,7 +190,7 @@ static bool closestSolid(const vplGeometry* g, const vplRay* ray, float tMax, in
         return true;
     }
     if (met) {
-        *hitOut = vplFinishHit(g, ray, &raw);
+        *hitOut = finishHit(g, ray, &raw);
     }
     return met;
 }
@@ -192,7 +198,10 @@ static bool closestSolid(const vplGeometry* g, const vplRay* ray, float tMax, in
 bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
 {
     const bool met = closestSolid(g, ray, tMax, tests, hitOut);
-    return g->cutOuts == NULL ? met : vplCutOuts_ClosestHit(g, ray, met ? hitOut->t : tMax, hitOut) || met;
+    if (__builtin_expect(g->cutOuts == NULL, 1)) {
+        return met;
+    }
+    return vplCutOuts_ClosestHit(g, ray, met ? hitOut->t : tMax, hitOut) || met;
 }
 
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut)

@@ -84,7 +84,12 @@ static vplTexels decodeCodes(const uint8_t* bytes, size_t size, int channels)
 
 vplTexels vplTexels_Decode(const uint8_t* bytes, size_t size)
 {
-    return decodeCodes(bytes, size, 0);
+    vplTexels t = decodeCodes(bytes, size, 0);
+    if (t.codes != NULL && (t.width < 1 || t.height < 1)) { // stb reads TGA files of no pixels
+        vplTexels_Free(&t);
+        t.reason = "it has no pixels";
+    }
+    return t;
 }
 
 void vplTexels_Free(vplTexels* texels)

@@ -313,9 +313,7 @@ vplRadiance vplConnectToParticle(vplPathState* path, const vplPathVertex* vertex
         return none;
     }
     // The vertex that a path from the camera would have there.
-    const vplFootprint footprint =
-        vplFootprintOfBounce(vplScale((float)(1 / distance), between), (float)distance);
-    vplPathVertex there = vplPathVertex_Make(s, &particle->hit, between, &footprint);
+    vplPathVertex there = vplPathVertex_Make(s, &particle->hit, between, VPL_BOUNCE_SPREAD * (float)distance);
     double cosine = vplDot(between, vertex->shading) / distance,
            flat = vplDot(between, vertex->normal) / distance;
     double cosineThere = -vplDot(between, there.normal) / distance;

@@ -37,8 +37,7 @@ static bool survives(const vplPathState* path, uint32_t set, vplRgb* throughput)
 static vplPathVertex arrive(const vplPathScene* s, const vplPathVertex* from, const vplHit* hit,
                             vplVec3 direction)
 {
-    const vplFootprint footprint = vplFootprintOfBounce(direction, hit->t);
-    vplPathVertex v = vplPathVertex_Make(s, hit, direction, &footprint);
+    vplPathVertex v = vplPathVertex_Make(s, hit, direction, VPL_BOUNCE_SPREAD * hit->t);
     double cosines = (double)vplDot(direction, from->shading) * -(double)vplDot(direction, v.normal);
     v.density = cosines / (VPL_PI * hit->t * hit->t);
     return v;
@@ -118,7 +117,6 @@ void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
         particle = vplShootParticle(path, (double)u[2], start);
     }
     // Paths average over the pixel themselves: each looks up half of its width.
-    const vplFootprint footprint = {vplNormalize(ray.direction),
-                                    0.5f * s->pixelWidth * (hit.t + (float)camera->near)};
-    followBounces(path, vplPathVertex_Make(s, &hit, ray.direction, &footprint), &particle, sum);
+    const float width = 0.5f * s->pixelWidth * (hit.t + (float)camera->near);
+    followBounces(path, vplPathVertex_Make(s, &hit, ray.direction, width), &particle, sum);
 }

@@ -68,15 +68,19 @@ vplRay vplPathScene_CameraRay(const vplPathScene* s, int x, int y, const float o
     return ray;
 }
 
-vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction,
-                                 const vplFootprint* footprint)
+vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction, float width)
 {
     const vplGeometry* g = s->geometry;
     vplPathVertex v = {.hit = *hit,
                        .normal = hit->normal,
                        .shading = vplGeometry_ShadingNormal(g, hit),
                        .density = INFINITY};
-    v.rho = vplGeometry_Reflectance(g, hit->triangle, hit->position, footprint);
+    if (g->paint == NULL) {
+        v.rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
+    } else {
+        const vplFootprint footprint = {vplNormalize(direction), width};
+        v.rho = vplPaint_Reflectance(g, hit->triangle, hit->position, &footprint);
+    }
     if (vplDot(direction, hit->normal) > 0) {
         v.normal = vplNegate(v.normal);
         v.shading = vplNegate(v.shading);

@@ -109,9 +109,9 @@ typedef struct vplPathVertex {
     double density; // per square metre, of reflections that lead here; infinite for what the camera sees
 } vplPathVertex;
 
-// `footprint` is where the cone around the ray in `direction`, of any length, meets the surface.
+// `width`: diameter, metres, of the cone around the ray in `direction`, of any length.
 vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction,
-                                 const vplFootprint* footprint);
+                                 float width);
 
 // The radiance that the surface emits against `direction`.
 vplRgb vplPathScene_EmissionAt(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);

@@ -62,13 +62,22 @@ static float solidDistance(const vplShading* s, int triangle, vplVec3 sight)
     return vplDistanceOf(g, s->view, triangle, n, vplDot(n, vplSub(corner, s->view->eye)), sight);
 }
 
-// The cut-out that is seen before the triangle in a point of pixel (x, y).
-static bool findSeen(const vplShading* s, int triangle, int x, int y, vplSubPixel at, vplHit* hit)
+// A pixel of the picture, and how many of its points show something: samples and the centre.
+typedef struct Pixel {
+    int x, y, points;
+} Pixel;
+
+// The cut-out that is seen before the triangle in a point of a pixel.
+static bool findSeen(const vplShading* s, int triangle, const Pixel* p, int rank, vplSubPixel at, vplHit* hit)
 {
-    const vplVec3 sight = vplSightOf(s->view, x, y, at);
-    const float near = (float)s->view->near;
-    const vplRay ray = {vplAdd(s->view->eye, vplScale(near, sight)), sight, {0, 0}};
-    return vplCutOuts_ClosestHit(s->geometry, &ray, solidDistance(s, triangle, sight) - near, hit);
+    const vplView* v = s->view;
+    const vplVec3 sight = vplSightOf(v, p->x, p->y, at);
+    const float near = (float)v->near, offset[2] = {(float)v->offsetX, (float)v->offsetY};
+    vplPixelRay ray = {.ray = {vplAdd(v->eye, vplScale(near, sight)), sight, {0, 0}},
+                       .rank = (float)rank / (float)p->points};
+    memcpy(ray.pixel, offset, sizeof ray.pixel); // pictures that are averaged have different offsets
+    ray.pixel[0] ^= (uint32_t)p->y << 16 | (uint32_t)p->x;
+    return vplCutOuts_FindSeen(s->geometry, &ray, solidDistance(s, triangle, sight) - near, hit);
 }
 
 static void putHit(const vplShading* s, const vplHit* hit, const vplTile* tile, int element)
@@ -92,16 +101,17 @@ void vplShowCutOuts(void* data, vplTile* tile, int worker)
     for (int y = 0; y < tile->height; y++) {
         for (int x = 0; x < tile->width; x++) {
             const int element = vplElementOf(x, y);
+            const Pixel p = {tile->x + x, tile->y + y, tile->sampleCount + 1};
             vplHit hit;
             int32_t id;
             memcpy(&id, &tile->planes[VPL_PLANE_TRIANGLE][element], sizeof id);
-            if (findSeen(s, id - 1, tile->x + x, tile->y + y, (vplSubPixel){0, 0}, &hit)) {
+            if (findSeen(s, id - 1, &p, tile->sampleCount, (vplSubPixel){0, 0}, &hit)) {
                 putHit(s, &hit, tile, element);
             }
             for (int i = 0; i < tile->sampleCount; i++) {
                 int32_t* shown = &tile->samples[i][element];
                 const vplSubPixel at = vplSubPixel_OfSample(i, tile->sampleCount);
-                if (findSeen(s, *shown, tile->x + x, tile->y + y, at, &hit)) {
+                if (findSeen(s, *shown, &p, i, at, &hit)) {
                     *shown = hit.triangle;
                 }
             }

@@ -4,6 +4,9 @@
 #include "fuzz.h"
 
 #include "image/image_file.h"
+#include "scene/scene.h"
+#include "scene/texture.h"
+#include "scene/texture_load.h"
 
 #include <math.h>
 #include <string.h>
@@ -43,6 +46,35 @@ static void requireComparison(const vplImage* image)
     REQUIRE(vplImage_Flip(image, image, VPL_DEFAULT_PPD, &flip, NULL) == result && flip == 0);
 }
 
+// Requires that any bytes become a texture, maybe a grey one, whose look-ups are reflectances.
+static void tryTexture(const char* name, const uint8_t* bytes, size_t size)
+{
+    FuzzLog log = {{0}, 0};
+    vplContext* context = openFuzzContext(&log);
+    vplScene* scene = NULL;
+    int index = -1;
+    const vplTextureFile file = {.path = name,
+                                 .bytes = bytes,
+                                 .size = size,
+                                 .where = "fuzz:1:1",
+                                 .wrapV = VPL_WRAP_MIRROR,
+                                 .otherwise = 0.5f};
+    REQUIRE(vplScene_Create(context, &scene) == VPL_SUCCESS);
+    const vplResult result = vplScene_LoadTexture(scene, &file, &index);
+    REQUIRE(result == VPL_OUT_OF_MEMORY || (result == VPL_SUCCESS && index == 0)); // memory is limited
+    for (int i = 0; i < 8 && result == VPL_SUCCESS; i++) {
+        float rgba[4];
+        const vplTextureArea area = {
+            .u = 0.37 * i, .v = -0.21 * i, .longU = 0.01f * (float)(i * i), .shortV = 0.03f};
+        vplTexture_Lookup(scene->textures[0].decoded, &area, rgba);
+        for (int c = 0; c < 4; c++) {
+            REQUIRE(rgba[c] >= 0 && rgba[c] <= 1);
+        }
+    }
+    vplScene_Destroy(scene);
+    closeFuzzContext(context);
+}
+
 static void tryDecoder(vplDecodeFcn* decoder, const uint8_t* bytes, size_t size)
 {
     FuzzLog log = {{0}, 0};
@@ -73,5 +105,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
     for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++) {
         tryDecoder(decoders[i], bytes, size);
     }
+    tryTexture("picture.png", bytes, size);
+    tryTexture("picture.hdr", bytes, size);
     return 0;
 }

@@ -10,8 +10,8 @@ int fuzzObj(const uint8_t* bytes, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
 {
-    static const char obj[] =
-        "mtllib 100\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b c\nf 1 3 2\n\x1F";
+    static const char obj[] = "mtllib 100\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 2 -1\nusemtl a\nf 1/1 2/2 "
+                              "3/1\nusemtl b c\nf 1 3/-1 2\n\x1F";
     const size_t start = sizeof obj - 1;
     uint8_t* all = malloc(start + size);
     REQUIRE(all != NULL);

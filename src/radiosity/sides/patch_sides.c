@@ -182,6 +182,9 @@ static vplPatchSide makeSide(const vplPatches* patches, int patch, bool back, un
     if (g->paint != NULL) {
         side.reflectance = vplPaint_MeanOfPart(g, triangle, side.corners);
     }
+    if (g->cutOuts != NULL) { // the rest of the light goes through
+        side.reflectance = vplRgbScale(vplGeometry_MeanOpacity(g, triangle, side.corners), side.reflectance);
+    }
     if (vplPatches_IsGroup(patches, patch)) {
         meanOfGroup(patches, patch, back, &side);
     }

@@ -7,6 +7,7 @@
 #define VPL_RADIOSITY_SIDE_H
 
 #include "base/arena.h"
+#include "geometry/cut_outs.h"
 #include "geometry/paint.h"
 #include "radiosity/radiosity_kernels.h"
 
