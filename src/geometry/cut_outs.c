@@ -27,6 +27,15 @@ bool vplIsCutOut(const vplMaterialDef* m)
     return m->opacity < 1 || m->alphaTexture >= 0 || m->alphaFromTexture;
 }
 
+bool vplScene_HasCutOuts(const vplScene* scene)
+{
+    bool any = false;
+    for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
+        any = any || vplIsCutOut(vplScene_GetMaterial(scene, i));
+    }
+    return any;
+}
+
 static void lookUp(const vplGeometry* g, int texture, const vplTexturedTriangle* t, const double w[3],
                    float rgbaOut[4])
 {

@@ -16,6 +16,8 @@ typedef struct vplCutOuts {
 // True for a material that lets light through somewhere.
 bool vplIsCutOut(const vplMaterialDef* material);
 
+bool vplScene_HasCutOuts(const vplScene* scene);
+
 // True for a triangle of the ray tree.
 static inline bool vplIsSolid(const vplGeometry* g, int triangle)
 {

@@ -243,15 +243,6 @@ static void chooseRadiosity(vplPlan* p)
 
 enum { CUT_OUT_RAYS = 64 }; // from each pixel, where patches are not drawn
 
-static bool hasCutOuts(const vplScene* scene)
-{
-    bool any = false;
-    for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
-        any = any || vplIsCutOut(vplScene_GetMaterial(scene, i));
-    }
-    return any;
-}
-
 // Decides which kinds of light the picture adds up.
 static void choosePicture(const vplScene* scene, vplPlan* p)
 {
@@ -264,7 +255,8 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
     p->showsDirect = row->direct && o->method != VPL_METHOD_PATH;
     p->showsVirtual = lit && row->lights && (o->output.show != VPL_SHOW_DIRECT || keller);
     p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
-    if (p->showsPatches && vplShowsLight(o->output.show) && o->radiosity.gather == 0 && hasCutOuts(scene)) {
+    if (p->showsPatches && vplShowsLight(o->output.show) && o->radiosity.gather == 0 &&
+        vplScene_HasCutOuts(scene)) {
         o->radiosity.gather = CUT_OUT_RAYS;
         vplDecide(p, "gather", "patches cannot be seen through holes: pixels gather their light");
     }
