@@ -73,7 +73,8 @@ static void finishObject(vplGeometry* g, const vplGeometryBuilder* b, int index)
     vplGeometryObject* object = &b->objects[index];
     const vplMeshDef shape = vplShapeOf(b->scene, &b->scene->objects[index]);
     vplBuildObject(b, index);
-    object->byFormula = !isCutOut(b->scene, &b->scene->objects[index]) && vplNeedsFormula(object, &shape, b->positions);
+    object->byFormula =
+        !isCutOut(b->scene, &b->scene->objects[index]) && vplNeedsFormula(object, &shape, b->positions);
     if (object->byFormula) {
         b->formulaObjects[g->formulaCount++] = index;
     }
