@@ -161,8 +161,8 @@ TEST(EachMethodRunsTheStagesOfItsDocument, 1)
         ("geometry, reflective map, first bounce, clusters, paraboloid, second bounce, second clusters, "
          "second "
          "paraboloid, further bounces, list, area lights, virtual lights, shading"),
-        ("geometry, patches, reachable sides, patch mesh, form factors, patch light, solve, corners, shadow "
-         "map, area lights, shading")};
+        ("geometry, patches, reachable sides, patch mesh, form factors, area lights, patch light, solve, "
+         "corners, shadow map, shading")};
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 2, 0}, (vplVec3){0, -1, 0}, 1);
     for (int method = 0; method < METHOD_COUNT; method++) {
