@@ -70,6 +70,7 @@ typedef struct vplPlan {
     bool emitterRays;     // emitters are shadowed by rays, not by maps
     bool hasAreaLights;   // a material emits light
     bool hasSky;          // the scene has an environment
+    bool hasCutOuts;      // materials let light through
     bool showsDirect;     // the picture shows emission, and light from emitters and area lights
     bool showsVirtual;    // the picture shows light from virtual lights
     bool showsPatches;    // the picture shows patches

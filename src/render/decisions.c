@@ -255,8 +255,8 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
     p->showsDirect = row->direct && o->method != VPL_METHOD_PATH;
     p->showsVirtual = lit && row->lights && (o->output.show != VPL_SHOW_DIRECT || keller);
     p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
-    if (p->showsPatches && vplShowsLight(o->output.show) && o->radiosity.gather == 0 &&
-        vplScene_HasCutOuts(scene)) {
+    p->hasCutOuts = vplScene_HasCutOuts(scene);
+    if (p->showsPatches && vplShowsLight(o->output.show) && o->radiosity.gather == 0 && p->hasCutOuts) {
         o->radiosity.gather = CUT_OUT_RAYS;
         vplDecide(p, "gather", "patches cannot be seen through holes: pixels gather their light");
     }

@@ -140,7 +140,8 @@ static double sampleScratch(const Scale* s)
     const bool filtered = vplPixelsShareLight(s->plan);
     const double tile = (o->output.antialias + 1) * 16384.0 + 1024;
     const double tiles = ceil(o->output.width / 64.0) * ceil(o->output.height / 64.0);
-    return o->output.antialias > 1 ? tile * s->workers + (filtered ? 4 * s->pixels + 32768 * tiles : 0) +
+    const double edges = s->plan->hasCutOuts ? 131072 : 32768;
+    return o->output.antialias > 1 ? tile * s->workers + (filtered ? 4 * s->pixels + edges * tiles : 0) +
                                          (s->plan->showsPatches && !s->plan->gathers ? 12 * s->pixels : 0)
                                    : 0;
 }

@@ -18,8 +18,9 @@ enum {
 // Planes of the whole picture.
 enum { VPL_FILTER_INDIRECT = 0, VPL_FILTER_TRIANGLE = 3, VPL_FILTER_PLANES };
 
-// Surfaces at edges that one tile keeps for the filter; the light of more is found without neighbours.
-enum { VPL_TILE_EDGES = 2048 };
+// Surfaces at edges that one tile keeps for the filter; the light of more is found without neighbours, which is noisy.
+// With cut-outs each pixel can show two besides that in its centre: a pane's, and those seen through it.
+enum { VPL_TILE_EDGES = 2048, VPL_CUT_OUT_EDGES = 2 * VPL_TILE_SIDE * VPL_TILE_SIDE };
 
 // A surface at an edge whose indirect light the filter finds.
 typedef struct vplKeptEdge {
@@ -56,7 +57,8 @@ typedef struct vplInterleave {
     vplFilterScratch* scratch; // one per worker
     // Coverage antialiasing only; else NULL.
     float* centres;     // share of each pixel's surface in its centre
-    vplKeptEdge* edges; // VPL_TILE_EDGES per tile
+    vplKeptEdge* edges; // mostEdges per tile
+    int mostEdges;
     int* edgeCounts;    // per tile
     int rasterTilesX;   // tiles per row
     int tilesX, tilesY; // tasks of the filter

@@ -52,7 +52,7 @@ static inline KeptEdges edgesOf(const vplInterleave* w, const Part* part)
         return (KeptEdges){NULL, 0};
     }
     const int tile = part->y / VPL_TILE_SIDE * w->rasterTilesX + part->x / VPL_TILE_SIDE;
-    return (KeptEdges){w->edges + (size_t)tile * VPL_TILE_EDGES, w->edgeCounts[tile]};
+    return (KeptEdges){w->edges + (size_t)tile * (size_t)w->mostEdges, w->edgeCounts[tile]};
 }
 
 static inline bool isInPart(const Part* part, const vplKeptEdge* e)

@@ -114,7 +114,8 @@ static vplResult openInterleaved(vplShading* shading, vplFramebuffer* framebuffe
         w->rasterTilesX = (width + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
         const size_t tiles = (size_t)w->rasterTilesX * (size_t)((height + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE);
         w->centres = vplArena_Alloc(shading->arena, pixels, sizeof *w->centres);
-        w->edges = vplArena_Alloc(shading->arena, tiles, VPL_TILE_EDGES * sizeof *w->edges);
+        w->mostEdges = shading->geometry->cutOuts != NULL ? VPL_CUT_OUT_EDGES : VPL_TILE_EDGES;
+        w->edges = vplArena_Alloc(shading->arena, tiles, (size_t)w->mostEdges * sizeof *w->edges);
         w->edgeCounts = vplArena_Alloc(shading->arena, tiles, sizeof *w->edgeCounts);
         TRY(vplArena_Check(shading->arena));
     }

@@ -227,8 +227,8 @@ static void lightClass(Class* class, int x, int y)
 
 // ---- edges
 
-// The edges of one tile. The filter finds the indirect light of the first VPL_TILE_EDGES surfaces; all light
-// of the others is found now.
+// The edges of one tile. The filter finds the indirect light of the first mostEdges surfaces; all light of
+// the others is found now.
 typedef struct TileEdges {
     vplKeptEdge* kept;
     int* keptCount;
@@ -241,7 +241,7 @@ static void lightEdgePixel(const vplShading* s, void* user, const vplEdgePixel* 
     TileEdges* t = user;
     w->centres[(size_t)p->y * (size_t)s->image->width + (size_t)p->x] = p->share;
     for (int i = 0; i < p->count; i++) {
-        const bool keep = *t->keptCount < VPL_TILE_EDGES;
+        const bool keep = *t->keptCount < w->mostEdges;
         if (keep) {
             t->kept[(*t->keptCount)++] = (vplKeptEdge){(uint16_t)p->x, (uint16_t)p->y, p->others[i]};
         }
@@ -256,7 +256,7 @@ static void lightTileEdges(const vplShading* s, vplTile* tile, vplFacetCache* ca
     const int number = tile->y / VPL_TILE_SIDE * w->rasterTilesX + tile->x / VPL_TILE_SIDE;
     int turn = number; // of the classes
     TileEdges edges = {
-        .kept = w->edges + (size_t)number * VPL_TILE_EDGES,
+        .kept = w->edges + (size_t)number * (size_t)w->mostEdges,
         .keptCount = &w->edgeCounts[number],
         .direct = {s, cache, NULL, NULL, &tileSums->shadowRays, .direct = true},
         .all = {s, cache, vplAddSomeClasses, &turn, &tileSums->shadowRays, .direct = true, .indirect = true}};
