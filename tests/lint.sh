@@ -20,6 +20,7 @@ uninitvar:src/cli/calibration.c
 uninitvar:src/geometry/bvh_split.c
 uninitvar:src/geometry/triangle.c
 uninitvar:src/scene/model_look.c
+uninitvar:src/scene/model_scene.c
 uninitStructMember:src/geometry/trace.c
 # The block stays in the structure.
 memleak:src/cli/tradeoff/text.c

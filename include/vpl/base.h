@@ -151,6 +151,13 @@ int vplContext_GetWorkerCount(const vplContext* context);
 // on the thread that made the call.
 void vplContext_SetProgress(vplContext* context, vplProgressFcn* progress, void* user);
 
+// A file in memory. `path` is the name by which it is looked for.
+typedef struct vplMemoryFile {
+    const char* path;
+    const void* bytes; // read only; need not end in 0
+    size_t size;
+} vplMemoryFile;
+
 // Writes a whole file. It writes to a temporary file beside the target, checks it and renames it, so that the
 // target is either unchanged or complete. Devices and pipes are written directly. VPL_FILE_ERROR,
 // VPL_OUT_OF_MEMORY.

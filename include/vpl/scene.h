@@ -202,6 +202,14 @@ vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplModel
 // The same with the default def.
 vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut);
 
+// Reads a scene whose files are in memory. The first file is the scene, in the format that its path's ending says, as for
+// vplScene_LoadFor; the others are those that it names. A name is looked for beside the file that it stands in: a file
+// "chair.gltf" that names "chair.bin" finds the path "chair.bin", and "a/chair.gltf" finds "a/chair.bin". What is not among
+// them is read from disk. `files` need not outlive the call. VPL_INVALID_ARGUMENT also for a count below 1, a path that is
+// NULL or empty, and bytes that are NULL with a size.
+vplResult vplScene_LoadMemory(vplContext* context, const vplMemoryFile* files, int count,
+                              const vplModelSceneDef* def, vplScene** sceneOut);
+
 // Where the scene's own (0, 0, 0) lies in the caller's space, metres; (0, 0, 0) in a new scene. All positions
 // of the scene, of its geometry and of its lights are relative to it, in float: a scene far from (0, 0, 0),
 // such as 1e6 m, keeps its digits only if its positions are given relative to a near origin. Setting it moves

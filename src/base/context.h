@@ -29,6 +29,9 @@ struct vplContext {
     atomic_bool cancelled;    // the loop of tasks under way
     uint64_t stamps;          // see vplNextStamp
     struct vplSpeeds* speeds; // see vplContext_SetSpeeds; NULL: as usual
+    // What is read instead of files of these paths, while a scene is read from memory.
+    const vplMemoryFile* files;
+    int fileCount;
 };
 
 // Returns a different number each time. Identifies an object, or one state of it.

@@ -53,8 +53,38 @@ static vplResult readAll(vplContext* context, const char* path, int fd, vplByteB
     }
 }
 
+static const vplMemoryFile* findInMemory(const vplContext* context, const char* path)
+{
+    for (int i = 0; i < context->fileCount; i++) {
+        if (strcmp(context->files[i].path, path) == 0) {
+            return &context->files[i];
+        }
+    }
+    return NULL;
+}
+
+static vplResult readFromMemory(vplContext* context, const vplMemoryFile* file, char** bytesOut,
+                                size_t* sizeOut)
+{
+    char* bytes = vplAlloc(context, file->size + 1, 1);
+    if (bytes == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    if (file->size > 0) {
+        memcpy(bytes, file->bytes, file->size);
+    }
+    bytes[file->size] = 0;
+    *bytesOut = bytes;
+    *sizeOut = file->size;
+    return VPL_SUCCESS;
+}
+
 vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut)
 {
+    const vplMemoryFile* held = findInMemory(context, path);
+    if (held != NULL) {
+        return readFromMemory(context, held, bytesOut, sizeOut);
+    }
     int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe may have no writer yet
     if (fd < 0) {
         return vplFail(context, VPL_FILE_ERROR, "%s: cannot open: %s", path, strerror(errno));
@@ -81,10 +111,10 @@ vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, si
     return VPL_SUCCESS;
 }
 
-bool vplIsRegularFile(const char* path)
+bool vplIsRegularFile(const vplContext* context, const char* path)
 {
     struct stat info;
-    return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+    return findInMemory(context, path) != NULL || (stat(path, &info) == 0 && S_ISREG(info.st_mode));
 }
 
 const char* vplBaseName(const char* path)

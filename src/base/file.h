@@ -13,7 +13,7 @@ enum { VPL_MAX_STREAM_BYTES = 256 << 20 };
 vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut);
 
 // True if `path` names a regular file, not a folder, device or pipe.
-bool vplIsRegularFile(const char* path);
+bool vplIsRegularFile(const vplContext* context, const char* path);
 
 // Resolves `name` (length bytes) relative to the folder of the file `from`; absolute names stay as they are.
 // Freed with vplFree; NULL when out of memory.

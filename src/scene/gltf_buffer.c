@@ -93,7 +93,7 @@ vplResult vplGltf_ReadUri(vplGltf* g, const vplJson* owner, const uint8_t** byte
     const char* path = NULL;
     char* bytes = NULL;
     TRY(vplGltf_FindBeside(g, uri, &path));
-    if (!vplIsRegularFile(path)) { // a device or a pipe would make us wait
+    if (!vplIsRegularFile(g->context, path)) { // a device or a pipe would make us wait
         return vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", uri, path);
     }
     TRY(vplReadFile(g->context, path, &bytes, sizeOut));

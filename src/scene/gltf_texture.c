@@ -106,7 +106,7 @@ vplResult vplGltf_ReadMean(vplGltf* g, const vplJson* object, const char* key, b
         Picture p;
         char* read = NULL;
         TRY(findPicture(g, image, &p));
-        if (p.bytes == NULL && vplIsRegularFile(p.label)) {
+        if (p.bytes == NULL && vplIsRegularFile(g->context, p.label)) {
             TRY(vplReadFile(g->context, p.label, &read, &p.size));
             p.bytes = (const uint8_t*)read;
         }

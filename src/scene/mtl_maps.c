@@ -61,7 +61,7 @@ static vplResult find(vplArena* arena, const vplText* text, const char* name, si
     if (path == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    const bool there = must || vplIsRegularFile(path);
+    const bool there = must || vplIsRegularFile(text->context, path);
     *pathOut = there ? vplArena_CopyString(arena, path) : NULL;
     vplFree(text->context, path);
     return there && *pathOut == NULL ? VPL_OUT_OF_MEMORY : VPL_SUCCESS;

@@ -37,7 +37,7 @@ static vplResult readLibraryAt(vplObj* obj, const char* path, vplWord name, bool
 {
     int number;
     const size_t length = strlen(path);
-    *foundOut = vplIsRegularFile(path); // a pipe or device would make us wait
+    *foundOut = vplIsRegularFile(obj->text.context, path); // a pipe or device would make us wait
     if ((!*foundOut && !warn) || vplNames_Find(&obj->libraries, path, length) >= 0) {
         return VPL_SUCCESS;
     }

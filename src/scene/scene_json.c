@@ -234,3 +234,27 @@ vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneO
     const vplModelSceneDef def = vplDefaultModelSceneDef();
     return vplScene_LoadFor(context, path, &def, sceneOut);
 }
+
+vplResult vplScene_LoadMemory(vplContext* context, const vplMemoryFile* files, int count,
+                              const vplModelSceneDef* def, vplScene** sceneOut)
+{
+    if (files == NULL || count < 1) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "the number of files is %d, must be at least 1",
+                       files == NULL ? 0 : count);
+    }
+    for (int i = 0; i < count; i++) {
+        if (files[i].path == NULL || files[i].path[0] == 0) {
+            return vplFail(context, VPL_INVALID_ARGUMENT, "files[%d].path is empty, must be a name", i);
+        }
+        if (files[i].bytes == NULL && files[i].size > 0) {
+            return vplFail(context, VPL_INVALID_ARGUMENT, "files[%d].bytes is NULL, must be %zu bytes", i,
+                           files[i].size);
+        }
+    }
+    context->files = files;
+    context->fileCount = count;
+    const vplResult result = vplScene_LoadFor(context, files[0].path, def, sceneOut);
+    context->files = NULL;
+    context->fileCount = 0;
+    return result;
+}

@@ -34,7 +34,7 @@ static vplResult readPicture(vplSceneLoader* l, const vplJson* environment, cons
         return VPL_OUT_OF_MEMORY;
     }
     const vplResult result =
-        vplIsRegularFile(path)
+        vplIsRegularFile(l->json.context, path)
             ? vplScene_LoadEnvironment(l->scene, path, def)
             : vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", name, path);
     vplFree(l->json.context, path);

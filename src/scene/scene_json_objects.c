@@ -104,7 +104,7 @@ static vplResult readModel(vplSceneLoader* l, const vplJson* object, int* out)
         return VPL_OUT_OF_MEMORY;
     }
     vplResult result;
-    if (!vplIsRegularFile(path)) {
+    if (!vplIsRegularFile(l->json.context, path)) {
         result = vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", name, path);
     } else if (!vplIsModelPath(path)) {
         result = vplJson_Fail(&member, "is \"%.80s\", must end in " VPL_MODEL_ENDINGS, name);

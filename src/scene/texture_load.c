@@ -102,7 +102,8 @@ vplResult vplScene_LoadTexture(vplScene* scene, const vplTextureFile* file, int*
         *indexOut = known;
         return VPL_SUCCESS;
     }
-    if (file->bytes == NULL && vplIsRegularFile(file->path)) { // a pipe or device would make us wait
+    if (file->bytes == NULL &&
+        vplIsRegularFile(scene->context, file->path)) { // a pipe or device would make us wait
         const vplResult result = vplReadFile(scene->context, file->path, &read, &size);
         if (result == VPL_OUT_OF_MEMORY || result == VPL_CANCELLED) {
             return result;
