@@ -80,7 +80,8 @@ TEST(ScenesInMemoryAreThoseOnDisk, 1)
 TEST(WhatIsNotInMemoryIsReadFromDisk, 1)
 {
     vplMemoryFile file;
-    readFiles(context, "examples/scenes", "examples/scenes/", (const char* const[]){"testmodel.json"}, &file, 1);
+    readFiles(context, "examples/scenes", "examples/scenes/", (const char* const[]){"testmodel.json"}, &file,
+              1);
     vplScene* scene = loadMemory(context, &file, 1);
     freeFiles(context, &file, 1);
     assert_true(hashOf(scene) == hashOf(openScene(context, "examples/scenes/testmodel.json")));
@@ -88,7 +89,8 @@ TEST(WhatIsNotInMemoryIsReadFromDisk, 1)
 
 TEST(MistakesInMemoryAreFoundLikeThoseOnDisk, 1)
 {
-    static const char text[] = "{ \"camera\": { \"eye\": [0, 0, 1], \"target\": [0, 0, 0] },\n  \"objects\": 3 }";
+    static const char text[] =
+        "{ \"camera\": { \"eye\": [0, 0, 1], \"target\": [0, 0, 0] },\n  \"objects\": 3 }";
     const vplModelSceneDef def = vplDefaultModelSceneDef();
     const vplMemoryFile file = {"sent.json", text, sizeof text - 1}, unnamed = {"", text, 1};
     const vplMemoryFile unknown = {"sent.fbx", text, 4}, absent = {"absent.json", NULL, 1};

@@ -29,18 +29,6 @@ void vplDecide(vplPlan* plan, const char* option, const char* format, ...)
 
 // ---- decisions that options and method alone make
 
-// Chooses the side of the square of pixels that share lights, so that each pixel keeps eight lights or more.
-// With 4000 particles a side of 16 takes a third of the time of 8 (room, 1280x720), but blurs light near
-// corners in small pictures (256x256: error 2.9 % instead of 2.3 %).
-static int squareOf(const vplRenderOptions* o)
-{
-    const bool large = (int64_t)o->output.width * o->output.height >= 300000;
-    if (o->method != VPL_METHOD_KELLER || o->particles.count < 500) {
-        return 4;
-    }
-    return large && o->particles.count >= 2000 ? 16 : 8;
-}
-
 // Few rays leave noise, a large square blurs corners: with 16 rays a side of 4 leaves relmse 0.0075 and 0.0021, 8
 // leaves 0.0027 and 0.0017; with 64 rays it is 0.0019 and 0.0007 with 4, 0.0016 and 0.0014 with 8 (door-ajar and
 // room, 250 patches).
@@ -67,7 +55,7 @@ static void choosePipeline(vplPlan* p)
         }
     }
     if (o->pipeline.interleave < 0) {
-        o->pipeline.interleave = p->gathers ? squareOfRays(o->radiosity.gather) : squareOf(o);
+        o->pipeline.interleave = p->gathers ? squareOfRays(o->radiosity.gather) : vplUsualSquare(o);
         if (vplPixelsShareLight(p)) {
             vplDecide(p, "interleave",
                       ssvp         ? "as the document has it"

@@ -81,6 +81,18 @@ vplAccumulation vplUsualPipeline(const vplRenderOptions* o)
                                                              : VPL_ACCUMULATE_DEFERRED;
 }
 
+// Each pixel keeps eight lights or more.
+// With 4000 particles a side of 16 takes a third of the time of 8 (room, 1280x720), but blurs light near
+// corners in small pictures (256x256: error 2.9 % instead of 2.3 %).
+int vplUsualSquare(const vplRenderOptions* o)
+{
+    const bool large = (int64_t)o->output.width * o->output.height >= 300000;
+    if (o->method != VPL_METHOD_KELLER || o->particles.count < 500) {
+        return 4;
+    }
+    return large && o->particles.count >= 2000 ? 16 : 8;
+}
+
 // ---- checks
 
 double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* o)

@@ -11,6 +11,9 @@ double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* opti
 // The pipeline that "usual" stands for.
 vplAccumulation vplUsualPipeline(const vplRenderOptions* options);
 
+// The side of the square of pixels that share lights that "auto" stands for.
+int vplUsualSquare(const vplRenderOptions* options);
+
 // Checks that every option is in its range and the camera is one of the scene's.
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* options);
 

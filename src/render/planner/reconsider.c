@@ -97,7 +97,9 @@ static vplResult refine(vplRenderer* r, int halvings, bool* doneOut)
     const vplRenderOptions* before = &r->plan->options;
     o.method = before->method;
     o.lights.shadows = before->lights.shadows;
+    o.lights.compensation = before->lights.compensation;
     o.particles = before->particles;
+    o.pipeline.kind = before->pipeline.kind;
     o.output.antialias =
         before->output.antialias < 16 && o.output.antialias == 8 ? 16 : before->output.antialias;
     o.pipeline.interleave = before->pipeline.interleave >> halvings;
