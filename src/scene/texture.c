@@ -206,7 +206,7 @@ static void addBilinear(const vplTexture* t, int index, float u, float v, float 
     const float wa = (1 - fx) * (1 - fy) * scale, wb = fx * (1 - fy) * scale;
     const float wc = (1 - fx) * fy * scale, wd = fx * fy * scale;
     for (int i = 0; i < 4; i++) {
-        sums[i] += wa * a[i] + wb * b[i] + wc * c[i] + wd * d[i];
+        sums[i] += wa * (float)a[i] + wb * (float)b[i] + wc * (float)c[i] + wd * (float)d[i];
     }
 }
 
