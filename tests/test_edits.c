@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Scenes that are changed and rendered again: the bits of a scene that was declared so, and nothing made anew that did
 // not change.
-#include "test.h"
+#include "failing.h"
 
 #include "geometry/bvh.h"
 #include "scene/scene.h"
@@ -225,4 +225,28 @@ TEST(ARendererEndsWithTheSceneThatItWasCreatedFor, 1)
     assert_non_null(strstr(takeMessage(), "the scene was changed"));
     vplRenderer_Destroy(renderer);
     vplScene_Destroy(scene);
+}
+
+// Renders, changes and renders again with the same history.
+static vplResult renderEdited(Attempt* a)
+{
+    vplRenderOptions options = optionsOf(VPL_METHOD_KELLER, NULL);
+    TRY(vplScene_Load(a->context, "tests/data/room-closed.json", &a->scene));
+    TRY(vplHistory_Create(a->context, &a->history));
+    options.sequence.history = a->history;
+    TRY(vplRender(a->scene, &options, &a->image, NULL));
+    const int object = vplScene_GetObjectCount(a->scene) - 1;
+    vplMat4 transform = vplScene_GetObject(a->scene, object)->transform;
+    vplMaterialDef material = *vplScene_GetMaterial(a->scene, 0);
+    transform.m[12] += 0.2f;
+    material.emission = (vplRgb){2, 2, 1};
+    TRY(vplScene_SetTransform(a->scene, object, &transform));
+    TRY(vplScene_SetMaterial(a->scene, 0, &material));
+    TRY(vplScene_SetObjectMaterial(a->scene, object, 0));
+    return vplRender(a->scene, &options, &a->other, NULL);
+}
+
+TEST_ALONE(EditsSurviveFailedAllocations)
+{
+    failSomeAllocations("edits", renderEdited, 1);
 }

@@ -307,6 +307,18 @@ static vplResult readImage(Files* f, const char* path)
     return result;
 }
 
+static vplResult readEnvironment(Files* f, const char* path)
+{
+    vplScene* scene;
+    const vplEnvironmentDef def = vplDefaultEnvironmentDef();
+    assert_int_equal(vplScene_Create(f->context, &scene), VPL_SUCCESS);
+    const vplResult result = vplScene_LoadEnvironment(scene, path, &def);
+    assert_int_equal(vplScene_GetEnvironment(scene)->type,
+                     result == VPL_SUCCESS ? VPL_ENVIRONMENT_PICTURE : VPL_ENVIRONMENT_NONE);
+    vplScene_Destroy(scene);
+    return result;
+}
+
 static vplResult readPlan(Files* f, const char* path)
 {
     vplRenderOptions options = vplDefaultRenderOptions();
@@ -331,6 +343,10 @@ static const struct {
 } READERS[] = {{readScene, "tests/data/room.json", -1},
                {readScene, "tests/data/obj/meshes.json", -1},
                {readScene, "tests/data/obj/everything.obj", -1}, // with two MTL files
+               {readScene, "tests/data/gltf/everything.glb", -1},
+               {readScene, "tests/data/ply/odd/more-elements.ply", -1},
+               {readScene, "tests/data/stl/odd/upper-case-name.STL", -1},
+               {readEnvironment, "tests/fuzz/corpus/image/small.hdr", -1},
                {readImage, "tests/fuzz/corpus/image/small.png", -1},
                {readImage, "tests/fuzz/corpus/image/small.pfm", -1},
                {readImage, "tests/fuzz/corpus/image/small.hdr", -1},

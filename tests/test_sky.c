@@ -523,11 +523,46 @@ static vplResult makeSky(Attempt* a)
 {
     vplEnvironmentDef def = a->variant == 0 ? skyOf(30, 3, 0) : constantOf(1, 1, 1);
     TRY(vplScene_Create(a->context, &a->scene));
-    TRY(vplScene_SetEnvironment(a->scene, &def));
+    TRY(a->variant == 2 ? vplScene_LoadEnvironment(a->scene, "tests/fuzz/corpus/image/small.hdr", &def)
+                        : vplScene_SetEnvironment(a->scene, &def));
     return vplGeometry_Create(a->scene, &a->geometry);
+}
+
+static bool stopAtCall(void* user, double fraction)
+{
+    int* left = user;
+    return fraction >= 0 && --*left != 0;
+}
+
+// A picture of 2^19 pixels is copied to the scene, copied to the geometry and summed up: each asks twice.
+TEST(LargePicturesOfTheSkyCanBeCancelled, 1)
+{
+    enum { LARGE = 1024, HIGH = 512 };
+    float* pixels = calloc(LARGE * HIGH, 3 * sizeof *pixels);
+    vplEnvironmentDef def = vplDefaultEnvironmentDef();
+    def.type = VPL_ENVIRONMENT_PICTURE;
+    def.pixels = pixels;
+    def.width = LARGE;
+    def.height = HIGH;
+    pixels[0] = 1;
+    for (int stop = 1; stop <= 6; stop++) {
+        vplScene* scene = newScene(context);
+        vplEnvironment* e = NULL;
+        int left = stop;
+        vplContext_SetProgress(context, stopAtCall, &left);
+        vplResult result = vplScene_SetEnvironment(scene, &def);
+        assert_int_equal(result, stop <= 2 ? VPL_CANCELLED : VPL_SUCCESS);
+        assert_int_equal(vplScene_GetEnvironment(scene)->type,
+                         stop <= 2 ? VPL_ENVIRONMENT_NONE : VPL_ENVIRONMENT_PICTURE);
+        result = stop <= 2 ? result : vplEnvironment_Create(scene, &e);
+        assert_true(result == VPL_CANCELLED && e == NULL && left == 0);
+        vplContext_SetProgress(context, NULL, NULL);
+        vplScene_Destroy(scene);
+    }
+    free(pixels);
 }
 
 TEST_ALONE(FailedAllocationsOfSkiesAreReported)
 {
-    failEveryAllocation("sky", makeSky, "", 2);
+    failEveryAllocation("sky", makeSky, "", 3);
 }

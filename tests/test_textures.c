@@ -185,6 +185,37 @@ TEST(EveryLevelOfThePyramidHasTheMeanOfThePicture, 2)
     }
 }
 
+// Stops at the call that `left` counts down to.
+static bool stopAtCall(void* user, double fraction)
+{
+    int* left = user;
+    return fraction >= 0 && --*left != 0;
+}
+
+// Decoding and each level of the pyramid ask while they run: a picture of 2^28 texels takes seconds.
+TEST(LargeTexturesCanBeCancelled, 1)
+{
+    enum { SIZE = 512 };
+    vplScene* scene = emptyScene(context);
+    vplTextureDef def = vplDefaultTextureDef();
+    unsigned char* codes = calloc(SIZE, 3 * SIZE);
+    def.texels = codes;
+    def.width = def.height = SIZE;
+    const size_t bytes = vplContext_GetBytes(context);
+    const int stops[] = {1, SIZE, SIZE + 1, 2 * SIZE - 1}; // the last row, of one texel, is call 2 SIZE - 1
+    for (int i = 0; i < 4; i++) {
+        int left = stops[i];
+        vplContext_SetProgress(context, stopAtCall, &left);
+        assert_int_equal(vplScene_AddTexture(scene, &def, NULL), VPL_CANCELLED);
+        assert_true(left == 0 && vplScene_GetTextureCount(scene) == 0);
+        assert_true(vplContext_GetBytes(context) == bytes);
+    }
+    vplContext_SetProgress(context, NULL, NULL);
+    assert_int_equal(vplScene_AddTexture(scene, &def, NULL), VPL_SUCCESS);
+    vplScene_Destroy(scene);
+    free(codes);
+}
+
 TEST(TexelsLieWhereObjFilesPutThem, 1)
 {
     static const float greys[4] = {0.1f, 0.2f, 0.3f, 0.4f}; // top row first

@@ -224,7 +224,7 @@ vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3]);
 void vplScene_GetOrigin(const vplScene* scene, double originOut[3]);
 
 // Each checks a def, copies it and returns its index in *indexOut (may be NULL). VPL_INVALID_ARGUMENT for a
-// value out of range, which the message names; VPL_OUT_OF_MEMORY.
+// value out of range, which the message names; VPL_OUT_OF_MEMORY; for textures VPL_CANCELLED (see vplContext_SetProgress).
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut);
 vplResult vplScene_AddTexture(vplScene* scene, const vplTextureDef* def, int* indexOut);
 vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut);
@@ -235,7 +235,7 @@ vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* in
 // Sets the environment, in place of the one that was set before. The sun of a sky becomes a directional emitter, the
 // last of the scene so far: it stands in the direction of +x, turned by `rotate`. Setting another environment
 // takes that emitter's light away, and the emitter too where it is still the last. VPL_INVALID_ARGUMENT,
-// VPL_OUT_OF_MEMORY.
+// VPL_OUT_OF_MEMORY, VPL_CANCELLED (see vplContext_SetProgress).
 // Source: Preetham, Shirley and Smits, A Practical Analytic Model for Daylight, SIGGRAPH 1999.
 vplResult vplScene_SetEnvironment(vplScene* scene, const vplEnvironmentDef* def);
 

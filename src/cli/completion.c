@@ -87,7 +87,9 @@ static void printFish(void)
     for (const Option* o = getOptions(); o->name != NULL; o++) {
         printf("complete -c vpl -n '__fish_seen_subcommand_from");
         for (int i = 0; i < COMMAND_COUNT; i++) {
-            printf((o->commands & COMMANDS[i].bit) != 0 ? " %s" : "", COMMANDS[i].name);
+            if ((o->commands & COMMANDS[i].bit) != 0) {
+                printf(" %s", COMMANDS[i].name);
+            }
         }
         printf("' -%s %s%s", o->name[1] == 0 ? "s" : "l", o->name,
                o->value == NULL ? ""

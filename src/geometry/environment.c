@@ -141,11 +141,20 @@ vplEnvironmentSample vplEnvironment_Sample(const vplEnvironment* e, double u, do
 
 // ---- making it
 
-// The picture of the directions, with all its factors: one pixel where radiance is the same everywhere.
-static void copyPixels(const vplEnvironmentDef* def, int count, float* pixels)
+// A picture of 16384 x 8192 pixels takes seconds. Rows are asked after about 2^18 pixels, a few milliseconds.
+static vplResult askAfterRow(vplContext* context, int y, int width)
 {
+    const int rows = width < 1 << 18 ? (1 << 18) / width : 1;
+    return y % rows == rows - 1 ? vplAsk(context) : VPL_SUCCESS;
+}
+
+// A row of the picture of the directions, with all its factors: one pixel where radiance is the same everywhere.
+static void copyRow(const vplEnvironmentDef* def, int y, int count, float* pixels)
+{
+    const size_t start = 3 * (size_t)y * (size_t)count;
     const float one[3] = {def->radiance.r, def->radiance.g, def->radiance.b};
-    const float* from = def->type == VPL_ENVIRONMENT_CONSTANT ? one : def->pixels;
+    const float* from = def->type == VPL_ENVIRONMENT_CONSTANT ? one : def->pixels + start;
+    pixels += start;
     for (int i = 0; i < count; i++) {
         const vplRgb l = vplScaleRadiometric(
             def->scale, (vplRgb){from[3 * (size_t)i], from[3 * (size_t)i + 1], from[3 * (size_t)i + 2]});
@@ -155,7 +164,7 @@ static void copyPixels(const vplEnvironmentDef* def, int count, float* pixels)
     }
 }
 
-static vplResult fill(vplEnvironment* e, const vplEnvironmentDef* def)
+static vplResult fill(vplContext* context, vplEnvironment* e, const vplEnvironmentDef* def)
 {
     const size_t pixels = (size_t)e->width * (size_t)e->height, rows = (size_t)e->height + 1;
     float* copy = vplArena_Alloc(e->arena, pixels, 3 * sizeof *copy);
@@ -164,7 +173,10 @@ static vplResult fill(vplEnvironment* e, const vplEnvironmentDef* def)
     double* columns = vplArena_Alloc(e->arena, pixels + (size_t)e->height, sizeof *columns);
     double sine, irradiance[3] = {0, 0, 0};
     TRY(vplArena_Check(e->arena));
-    copyPixels(def, (int)pixels, copy);
+    for (int y = 0; y < e->height; y++) {
+        copyRow(def, y, e->width, copy);
+        TRY(askAfterRow(context, y, e->width));
+    }
     e->pixels = copy;
     e->rows = sums;
     e->columns = columns;
@@ -176,6 +188,7 @@ static vplResult fill(vplEnvironment* e, const vplEnvironmentDef* def)
     sums[0] = 0;
     for (int y = 0; y < e->height; y++) {
         sums[y + 1] = sums[y] + sumRow(e, y, columns + (size_t)y * ((size_t)e->width + 1), irradiance);
+        TRY(askAfterRow(context, y, e->width));
     }
     e->irradiance =
         vplScaleRadiometric(1, (vplRgb){(float)irradiance[0], (float)irradiance[1], (float)irradiance[2]});
@@ -197,7 +210,7 @@ vplResult vplEnvironment_Create(const vplScene* scene, vplEnvironment** environm
         e->arena = arena;
         e->width = constant ? 1 : def->width;
         e->height = constant ? 1 : def->height;
-        result = fill(e, def);
+        result = fill(vplScene_GetContext(scene), e, def);
     }
     if (result == VPL_SUCCESS && !(e->rows[e->height] > 0)) {
         vplArena_Destroy(arena);

@@ -66,6 +66,19 @@ static vplResult placeSun(vplScene* scene, const vplSky* sky, const vplEnvironme
     return VPL_SUCCESS;
 }
 
+// Values between questions whether to go on: a few milliseconds.
+enum { ASK_EVERY = 1 << 20 };
+
+static vplResult copyValues(vplContext* context, const float* from, size_t count, float* to)
+{
+    for (size_t i = 0; i < count; i += ASK_EVERY) {
+        const size_t some = count - i < ASK_EVERY ? count - i : ASK_EVERY;
+        memcpy(to + i, from + i, some * sizeof *to);
+        TRY(vplAsk(context));
+    }
+    return VPL_SUCCESS;
+}
+
 // Makes the picture that the copy of a def refers to.
 static vplResult copyPicture(vplScene* scene, const vplSky* sky, vplEnvironmentDef* copy, float** pixelsOut)
 {
@@ -86,7 +99,11 @@ static vplResult copyPicture(vplScene* scene, const vplSky* sky, vplEnvironmentD
     if (isSky) {
         vplSky_Paint(sky, copy->width, copy->height, pixels);
     } else {
-        memcpy(pixels, copy->pixels, values * sizeof *pixels);
+        const vplResult result = copyValues(scene->context, copy->pixels, values, pixels);
+        if (result != VPL_SUCCESS) {
+            vplArena_Free(scene->arena, pixels);
+            return result;
+        }
     }
     copy->pixels = *pixelsOut = pixels;
     return VPL_SUCCESS;
@@ -118,7 +135,7 @@ vplResult vplScene_SetEnvironment(vplScene* scene, const vplEnvironmentDef* def)
 }
 
 // Replaces values that no light has by 0.
-static void repair(const vplScene* scene, const char* path, vplImage* image)
+static vplResult repair(const vplScene* scene, const char* path, vplImage* image)
 {
     const size_t values = 3 * (size_t)image->width * (size_t)image->height;
     size_t wrong = 0;
@@ -128,12 +145,14 @@ static void repair(const vplScene* scene, const char* path, vplImage* image)
             image->pixels[i] = 0;
             wrong++;
         }
+        TRY(i % ASK_EVERY == ASK_EVERY - 1 ? vplAsk(scene->context) : VPL_SUCCESS);
     }
     if (wrong > 0) {
         vplLog(scene->context, VPL_LOG_WARNING,
                "%s: %zu values are negative, not finite or above %g; they count as 0", path, wrong,
                (double)VPL_MAX_MAGNITUDE);
     }
+    return VPL_SUCCESS;
 }
 
 vplResult vplScene_LoadEnvironment(vplScene* scene, const char* path, const vplEnvironmentDef* def)
@@ -141,12 +160,12 @@ vplResult vplScene_LoadEnvironment(vplScene* scene, const char* path, const vplE
     vplImage* image;
     vplEnvironmentDef read = *def;
     TRY(vplImage_Read(scene->context, path, &image));
-    repair(scene, path, image);
+    vplResult result = repair(scene, path, image);
     read.type = VPL_ENVIRONMENT_PICTURE;
     read.pixels = image->pixels;
     read.width = image->width;
     read.height = image->height;
-    const vplResult result = vplScene_SetEnvironment(scene, &read);
+    result = result == VPL_SUCCESS ? vplScene_SetEnvironment(scene, &read) : result;
     vplImage_Destroy(image);
     return result;
 }

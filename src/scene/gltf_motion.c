@@ -60,9 +60,10 @@ static vplResult readCurve(vplGltf* g, const vplJson* sampler, vplGltfCurve* c)
     TRY(readForm(sampler, &c->form));
     TRY(readNumbers(g, sampler, "input", 1, &count, &c->times));
     TRY(readNumbers(g, sampler, "output", COMPONENTS[c->part], &values, &c->values));
-    if (count == 0 || values != (c->form == CUBIC ? 3 : 1) * count) {
+    const int64_t expected = (c->form == CUBIC ? 3 : 1) * count;
+    if (count == 0 || values != expected) {
         return vplJson_Fail(&output, "has %lld elements, must have %lld for %lld times", (long long)values,
-                            (long long)((c->form == CUBIC ? 3 : 1) * count), (long long)count);
+                            (long long)expected, (long long)count);
     }
     for (int64_t i = 0; i < count; i++) {
         if (!(c->times[i] >= 0 && (i == 0 || c->times[i] > c->times[i - 1]))) {

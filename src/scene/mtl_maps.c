@@ -78,7 +78,9 @@ static vplResult findFile(vplArena* arena, const vplText* text, vplWord word, ch
     memcpy(name, word.start, length);
     name[length] = 0;
     for (size_t i = 0; i < length; i++) {
-        name[i] = name[i] == '\\' ? '/' : name[i];
+        if (name[i] == '\\') {
+            name[i] = '/';
+        }
     }
     const char* base = vplBaseName(name);
     TRY(find(arena, text, name, length, false, pathOut));

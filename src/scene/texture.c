@@ -35,27 +35,43 @@ static uint16_t quantise(float x)
     return (uint16_t)(65535 * x + 0.5f);
 }
 
-// Decodes the texels of the largest level.
-static void decode(const vplTextureDef* def, uint16_t* to)
+typedef struct Decoding {
+    const vplTextureDef* def;
+    uint16_t* to;
+    uint16_t linear[256]; // values of sRGB codes
+} Decoding;
+
+static void decodeRow(void* data, int y, int worker)
 {
+    (void)worker;
+    const Decoding* d = data;
+    const vplTextureDef* def = d->def;
     const int colours = def->channels < 3 ? 1 : 3;
-    const size_t count = (size_t)def->width * (size_t)def->height, channels = (size_t)def->channels;
-    uint16_t linear[256];
-    for (int code = 0; code < 256; code++) {
-        linear[code] = quantise(vplSrgb_Decode((float)code / 255.0f));
-    }
-    for (size_t i = 0; i < count; i++, to += VPL_TEXTURE_CHANNELS) {
+    const size_t first = (size_t)y * (size_t)def->width, end = first + (size_t)def->width;
+    const size_t channels = (size_t)def->channels;
+    uint16_t* to = d->to + VPL_TEXTURE_CHANNELS * first;
+    for (size_t i = first; i < end; i++, to += VPL_TEXTURE_CHANNELS) {
         const unsigned char* codes = def->texels != NULL ? def->texels + channels * i : NULL;
         const float* values = def->linear != NULL ? def->linear + channels * i : NULL;
         for (int c = 0; c < 3; c++) {
             const int from = colours == 1 ? 0 : c;
-            to[c] = codes != NULL ? linear[codes[from]] : quantise(values[from]);
+            to[c] = codes != NULL ? d->linear[codes[from]] : quantise(values[from]);
         }
         to[3] = 65535;
         if (def->channels == colours + 1) {
             to[3] = codes != NULL ? (uint16_t)(257 * codes[colours]) : quantise(values[colours]);
         }
     }
+}
+
+// Decodes the texels of the largest level.
+static vplResult decode(vplContext* context, const vplTextureDef* def, uint16_t* to)
+{
+    Decoding d = {.def = def, .to = to};
+    for (int code = 0; code < 256; code++) {
+        d.linear[code] = quantise(vplSrgb_Decode((float)code / 255.0f));
+    }
+    return vplParallelForAsking(context, def->height, decodeRow, &d);
 }
 
 // The texels of one axis that a texel of the next level covers: first .. last, and how much of the first and the
@@ -127,11 +143,11 @@ vplResult vplTexture_Create(vplContext* context, const vplTextureDef* def, vplTe
         result = allocateLevels(t, def->width, def->height);
     }
     if (result == VPL_SUCCESS) {
-        decode(def, t->levels[0].texels);
-        for (int i = 1; i < t->levelCount; i++) {
-            Halving halving = {&t->levels[i - 1], &t->levels[i]};
-            vplParallelFor(context, t->levels[i].height, averageRow, &halving);
-        }
+        result = decode(context, def, t->levels[0].texels);
+    }
+    for (int i = 1; result == VPL_SUCCESS && i < t->levelCount; i++) {
+        Halving halving = {&t->levels[i - 1], &t->levels[i]};
+        result = vplParallelForAsking(context, t->levels[i].height, averageRow, &halving);
     }
     return vplArena_Deliver(arena, result, t, textureOut);
 }
@@ -190,7 +206,7 @@ static void addBilinear(const vplTexture* t, int index, float u, float v, float 
     const float wa = (1 - fx) * (1 - fy) * scale, wb = fx * (1 - fy) * scale;
     const float wc = (1 - fx) * fy * scale, wd = fx * fy * scale;
     for (int i = 0; i < 4; i++) {
-        sums[i] += wa * a[i] + wb * b[i] + wc * c[i] + wd * d[i];
+        sums[i] += wa * (float)a[i] + wb * (float)b[i] + wc * (float)c[i] + wd * (float)d[i];
     }
 }
 

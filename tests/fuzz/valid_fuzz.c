@@ -52,6 +52,42 @@ static vplRgb lightOf(Bytes* b, double usual)
     return (vplRgb){(float)level, (float)(level * unit(b)), (float)(level / (1 + pick(b, 3)))};
 }
 
+// A picture of few texels, with 1 to 4 channels.
+static void addTexture(Bytes* b, vplScene* scene)
+{
+    enum { WIDEST = 9 };
+    unsigned char texels[4 * WIDEST * WIDEST];
+    vplTextureDef def = vplDefaultTextureDef();
+    def.width = 1 + (int)pick(b, WIDEST);
+    def.height = 1 + (int)pick(b, WIDEST);
+    def.channels = 1 + (int)pick(b, 4);
+    def.wrapU = (vplTextureWrap)pick(b, 3);
+    def.wrapV = (vplTextureWrap)pick(b, 3);
+    const unsigned seed = pick(b, 256);
+    for (int i = 0; i < def.width * def.height * def.channels; i++) {
+        texels[i] = (unsigned char)((unsigned)i * 73 % (seed + 2) * 255 / (seed + 1));
+    }
+    def.texels = texels;
+    REQUIRE(vplScene_AddTexture(scene, &def, NULL) == VPL_SUCCESS);
+}
+
+// Textures, holes and panes of a material.
+static void dress(Bytes* b, const vplScene* scene, vplMaterialDef* def)
+{
+    const int textures = vplScene_GetTextureCount(scene);
+    if (textures > 0) {
+        const int chosen = (int)pick(b, (unsigned)textures);
+        const bool alpha = vplScene_GetTexture(scene, chosen)->channels % 2 == 0;
+        def->texture = chosen;
+        def->alphaFromTexture = alpha && pick(b, 2);
+        def->alphaTexture = pick(b, 4) == 3 ? (int)pick(b, (unsigned)textures) : -1;
+        def->textureScale[0] = (float)(pick(b, 4) == 3 ? power(b, -6, 6) : 1);
+        def->textureOffset[1] = (float)(pick(b, 4) == 3 ? power(b, -6, 6) : 0);
+        def->textureRotation = pick(b, 3);
+    }
+    def->opacity = pick(b, 4) == 3 ? (float)numberIn(b, 0, 1) : 1;
+}
+
 static void addMaterial(Bytes* b, vplScene* scene)
 {
     vplMaterialDef def = vplDefaultMaterialDef();
@@ -60,6 +96,7 @@ static void addMaterial(Bytes* b, vplScene* scene)
     if (pick(b, 3) == 2) {
         def.emission = lightOf(b, 1);
     }
+    dress(b, scene, &def);
     REQUIRE(vplScene_AddMaterial(scene, &def, NULL) == VPL_SUCCESS);
 }
 
@@ -68,6 +105,8 @@ static int addMesh(Bytes* b, vplScene* scene)
 {
     enum { POINTS = 7, MOST = 12 };
     vplVec3 points[POINTS];
+    float texcoords[2 * POINTS];
+    vplRgb colors[POINTS];
     uint32_t indices[3 * MOST];
     vplMeshDef def = vplDefaultMeshDef();
     int index;
@@ -78,6 +117,14 @@ static int addMesh(Bytes* b, vplScene* scene)
     for (int i = 0; i < 3 * def.triangleCount; i++) {
         indices[i] = pick(b, POINTS);
     }
+    const double spread = pick(b, 4) == 3 ? power(b, -6, 6) : 1;
+    for (int i = 0; i < POINTS; i++) {
+        texcoords[2 * i] = (float)(spread * (2 * unit(b) - 1));
+        texcoords[2 * i + 1] = (float)(spread * (2 * unit(b) - 1));
+        colors[i] = (vplRgb){(float)unit(b), 1, 0.5f};
+    }
+    def.texcoords = pick(b, 2) ? texcoords : NULL;
+    def.colors = pick(b, 3) == 2 ? colors : NULL;
     def.positions = points;
     def.indices = indices;
     def.vertexCount = POINTS;
@@ -140,6 +187,28 @@ static void addCamera(Bytes* b, FuzzLog* log, vplScene* scene, double size, vplV
     log->errors = 0;
 }
 
+// Light from all directions: even, from a picture of few pixels, or of the sky.
+static void addEnvironment(Bytes* b, vplScene* scene)
+{
+    enum { WIDEST = 7 };
+    float pixels[3 * WIDEST * WIDEST];
+    vplEnvironmentDef def = vplDefaultEnvironmentDef();
+    def.type = (vplEnvironmentType)pick(b, 4);
+    def.radiance = lightOf(b, 1);
+    def.width = 1 + (int)pick(b, WIDEST);
+    def.height = 1 + (int)pick(b, WIDEST);
+    for (int i = 0; i < def.width * def.height; i++) {
+        const vplRgb l = lightOf(b, 1);
+        memcpy(pixels + 3 * i, (float[3]){l.r, l.g, l.b}, 3 * sizeof *pixels);
+    }
+    def.pixels = def.type == VPL_ENVIRONMENT_PICTURE ? pixels : NULL;
+    def.scale = pick(b, 4) == 3 ? power(b, -12, 12) : 1;
+    def.rotate = unit(b) - 0.5;
+    def.elevation = numberIn(b, 0, 0.5 * VPL_PI);
+    def.turbidity = numberIn(b, 2, 10);
+    REQUIRE(vplScene_SetEnvironment(scene, &def) == VPL_SUCCESS);
+}
+
 static vplScene* makeScene(vplContext* context, Bytes* b, FuzzLog* log)
 {
     vplScene* scene;
@@ -147,6 +216,9 @@ static vplScene* makeScene(vplContext* context, Bytes* b, FuzzLog* log)
     const vplVec3 middle = pick(b, 4) == 3 ? pointIn(b, size * power(b, 0, 5)) : (vplVec3){0, 0, 0};
     REQUIRE(vplScene_Create(context, &scene) == VPL_SUCCESS);
     addCamera(b, log, scene, size, middle);
+    for (int i = pick(b, 2) ? 1 + (int)pick(b, 2) : 0; i > 0; i--) {
+        addTexture(b, scene);
+    }
     for (int i = 1 + (int)pick(b, 3); i > 0; i--) {
         addMaterial(b, scene);
     }
@@ -162,6 +234,9 @@ static vplScene* makeScene(vplContext* context, Bytes* b, FuzzLog* log)
     }
     for (int i = (int)pick(b, 4); i > 0; i--) {
         addEmitter(b, log, scene, size, middle);
+    }
+    if (pick(b, 3) == 2) {
+        addEnvironment(b, scene);
     }
     return scene;
 }
