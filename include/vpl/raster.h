@@ -126,6 +126,8 @@ typedef struct vplPlane {
 
 typedef struct vplFramebuffer {
     int width, height; // pixels, [1, VPL_MAX_IMAGE_SIZE]
+    // Only tiles with a row in [firstRow, endRow) are drawn; other pixels stay as they are. endRow 0 (default): all.
+    int firstRow, endRow;
     vplPlane depth;
     vplPlane planes[VPL_MAX_PLANES];
     int planeCount; // [0, VPL_MAX_PLANES]

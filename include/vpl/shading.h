@@ -182,7 +182,10 @@ typedef struct vplShadeDef {
     bool emission;                          // the picture shows the emission of surfaces
     const vplCompensationDef* compensation; // physical only; NULL: light taken by the clamp is lost
     const vplGatherDef* gather;             // deferred and interleaved, physical only; NULL: no final gather
-    vplProgressFcn* progress;               // called while vplShadeView draws; default NULL
+    // Only rows in [firstRow, endRow) of the image are written, with the bits that they have in the whole picture. Both are
+    // multiples of VPL_TILE_SIDE, or endRow is the height. endRow 0 (default): all.
+    int firstRow, endRow;
+    vplProgressFcn* progress; // called while vplShadeView draws; default NULL
     void* progressUser;
 } vplShadeDef;
 

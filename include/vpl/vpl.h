@@ -16,5 +16,6 @@
 #include <vpl/options.h>
 #include <vpl/plan.h>
 #include <vpl/render.h>
+#include <vpl/pieces.h>
 
 #endif

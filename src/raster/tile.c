@@ -189,6 +189,9 @@ static void runTile(void* data, int number, int worker)
     tile->y = index / r->tilesX * VPL_TILE_SIDE;
     tile->width = vplMini(f->width - tile->x, VPL_TILE_SIDE);
     tile->height = vplMini(f->height - tile->y, VPL_TILE_SIDE);
+    if (f->endRow > 0 && (tile->y >= f->endRow || tile->y + tile->height <= f->firstRow)) {
+        return;
+    }
     const int* bin = r->bins + r->binStart[index];
     const int count = r->binStart[index + 1] - r->binStart[index];
     if (count == 0 && !r->hasTasks) {

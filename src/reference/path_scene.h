@@ -21,9 +21,10 @@ typedef struct vplPathDef {
     const vplCameraDef* camera;
     const vplEmitterDef* emitters; // NULL if there are none
     int emitterCount;
-    int width, height; // pixels
-    bool emission;     // show surfaces that emit; default true
-    bool pixelCentres; // start paths at the centres of pixels, where the rasterizer samples; default false
+    int width, height;    // pixels
+    int firstRow, endRow; // only pixels of these rows are traced; endRow 0 (default): all
+    bool emission;        // show surfaces that emit; default true
+    bool pixelCentres;    // start paths at the centres of pixels, where the rasterizer samples; default false
     // The picture sums light of this range of bounces, counted before the one towards the camera; default 0,
     // 1 << 16.
     int firstBounce, lastBounce;

@@ -16,10 +16,11 @@ struct vplPathTracer {
     vplRadiance (
         *before)[HALVES]; // the sums before the last pass that could be cancelled; NULL: none was kept
     int64_t* tileRays;
-    int64_t raysBefore; // of all tiles
-    int columns, rows;  // of tiles
-    int done, now;      // samples per pixel, before this pass and in it
-    vplArena* arena;    // owns the arrays
+    int64_t raysBefore;   // of all tiles
+    int columns, rows;    // of tiles
+    int firstRow, endRow; // of the pixels that are traced
+    int done, now;        // samples per pixel, before this pass and in it
+    vplArena* arena;      // owns the arrays
     vplContext* context;
 };
 
@@ -37,6 +38,8 @@ vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* de
                              .tileRays = tileRays,
                              .columns = columns,
                              .rows = rows,
+                             .firstRow = def->endRow > 0 ? def->firstRow : 0,
+                             .endRow = def->endRow > 0 ? def->endRow : def->height,
                              .arena = arena,
                              .context = geometry->context};
         result = vplPathScene_Init(&t->scene, geometry, def);
@@ -71,7 +74,7 @@ static void traceTile(void* data, int tile, int worker)
     (void)worker;
     vplPathTracer* t = data;
     int left = tile % t->columns * TILE, top = tile / t->columns * TILE;
-    for (int y = top; y < top + TILE && y < t->scene.def.height; y++) {
+    for (int y = top > t->firstRow ? top : t->firstRow; y < top + TILE && y < t->endRow; y++) {
         if (!vplTask_GoesOn(t->context)) {
             return;
         }
@@ -166,7 +169,7 @@ static float toFloat(double value)
 // If each half's mean of n_h samples has variance v/n_h, the picture's is (A - B)^2 n_A n_B / n^2.
 static void estimate(const vplPathTracer* t, double squares, double total, vplPathStats* stats)
 {
-    double values = 3.0 * t->scene.def.width * t->scene.def.height;
+    double values = 3.0 * t->scene.def.width * (t->endRow - t->firstRow);
     double a = (t->done + 1) / HALVES, b = t->done / HALVES;
     stats->errorEstimate = stats->relativeErrorEstimate = -1;
     if (t->done > 1) {
@@ -178,8 +181,8 @@ static void estimate(const vplPathTracer* t, double squares, double total, vplPa
 void vplPathTracer_Resolve(const vplPathTracer* tracer, vplImage* image, vplPathStats* statsOut)
 {
     double count[HALVES] = {(tracer->done + 1) / HALVES, tracer->done / HALVES}, squares = 0, total = 0;
-    size_t pixels = (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < pixels; i++) {
+    const size_t width = (size_t)image->width;
+    for (size_t i = (size_t)tracer->firstRow * width; i < (size_t)tracer->endRow * width; i++) {
         const vplRadiance *a = &tracer->sums[i][0], *b = &tracer->sums[i][1];
         const double channels[3][HALVES] = {{a->r, b->r}, {a->g, b->g}, {a->b, b->b}};
         for (int c = 0; c < 3; c++) {

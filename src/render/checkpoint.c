@@ -27,7 +27,7 @@ static const char MAGIC[8] = {'V', 'P', 'L', 'S', 'T', 'A', 'T', 'E'};
 
 typedef struct Header {
     uint32_t version, textBytes; // of the options, a multiple of 4
-    uint64_t scene;              // hashScene
+    uint64_t scene;              // vplRenderer_HashScene
     uint32_t width, height, parts;
     uint32_t passes, samples; // done; samples of path tracing
     uint32_t truth;           // pixels that tell the error; 0: there are none
@@ -143,8 +143,7 @@ static bool isTruthValid(const vplRenderer* r)
 
 // ---- saving
 
-// Identifies what is rendered: the scene, and the caller's camera where there is one.
-static uint64_t hashScene(const vplRenderer* r)
+uint64_t vplRenderer_HashScene(const vplRenderer* r)
 {
     const uint64_t scene = vplScene_GetHash(r->runner.run.scene);
     uint32_t view[sizeof r->plan->view / sizeof(uint32_t)];
@@ -158,7 +157,7 @@ static Header describe(const vplRenderer* r, const vplByteBuffer* text)
     const uint32_t parts = r->done > 0 ? partsOf(r->plan) : 0;
     Header h = {.version = VERSION,
                 .textBytes = (uint32_t)text->size,
-                .scene = hashScene(r),
+                .scene = vplRenderer_HashScene(r),
                 .width = (uint32_t)o->width,
                 .height = (uint32_t)o->height,
                 .parts = parts,
@@ -314,7 +313,7 @@ static vplResult checkRender(const Loading* l)
     const vplRenderer* r = l->renderer;
     const Header* h = &l->header;
     const vplContext* context = r->runner.run.context;
-    if (h->scene != hashScene(r)) {
+    if (h->scene != vplRenderer_HashScene(r)) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "%s: saved with another scene or view, or the scene was changed since", l->path);
     }

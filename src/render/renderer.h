@@ -73,6 +73,9 @@ vplResult vplRenderer_Plan(vplRenderer* renderer, const vplRenderOptions* option
 vplResult vplRenderer_Replace(vplRenderer* renderer, const vplRenderOptions* options, bool coarse,
                               double error);
 
+// Identifies what is rendered: the scene, and the caller's camera where there is one.
+uint64_t vplRenderer_HashScene(const vplRenderer* renderer);
+
 // Makes sums of passes, all 0.
 vplResult vplRenderer_OpenSums(vplRenderer* renderer);
 

@@ -55,11 +55,12 @@ typedef struct vplRun {
     void* before;
     uint32_t builds[VPL_STAGE_COUNT]; // counts how often each result was made, which tells two results apart
     int pass;
-    int samples;       // paths per pixel in this pass; 0: the tracer is made, and its sums come from a file
-    int parts;         // vplPart: what the picture stage adds up
-    bool draft;        // it is a round of adaptive patches before the last
-    vplArena* arena;   // memory of the result
-    vplArena* scratch; // memory that is freed when the stage ends
+    int samples; // paths per pixel in this pass; 0: the tracer is made, and its sums come from a file
+    int parts;   // vplPart: what the picture stage adds up
+    int firstRow, endRow;     // the only rows of the picture that are needed; endRow 0: all
+    bool draft;               // it is a round of adaptive patches before the last
+    vplArena* arena;          // memory of the result
+    vplArena* scratch;        // memory that is freed when the stage ends
     vplProgressFcn* progress; // of the stage under way; its `user` is the runner; NULL where nobody listens
     struct vplRunner* runner; // for timing of parts of a stage, progress and nested runs
     vplRenderStats* stats;    // counts of work are added here

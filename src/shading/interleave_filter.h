@@ -61,7 +61,8 @@ typedef struct vplInterleave {
     int mostEdges;
     int* edgeCounts;    // per tile
     int rasterTilesX;   // tiles per row
-    int tilesX, tilesY; // tasks of the filter
+    int tilesX, tilesY; // tasks of the filter that are run
+    int firstTask;      // the first of them
 } vplInterleave;
 
 static inline float* vplFilterPlane(const vplInterleave* w, int plane)

@@ -224,6 +224,7 @@ void VPL_KERNEL(vplFilterTask)(void* data, int task, int worker)
     const vplImage* image = s->image;
     vplFilterScratch* scratch = &w->scratch[worker];
     const int side = w->side, reach = side - 1;
+    task += w->firstTask;
     Part part = {.x = task % w->tilesX * VPL_FILTER_WIDTH, .y = task / w->tilesX * VPL_FILTER_HEIGHT};
     part.width = image->width - part.x < VPL_FILTER_WIDTH ? image->width - part.x : VPL_FILTER_WIDTH;
     part.height = image->height - part.y < VPL_FILTER_HEIGHT ? image->height - part.y : VPL_FILTER_HEIGHT;

@@ -105,7 +105,10 @@ static vplResult openInterleaved(vplShading* shading, vplFramebuffer* framebuffe
     w->side = shading->def->interleave;
     w->pixelCount = pixels;
     w->tilesX = (width + VPL_FILTER_WIDTH - 1) / VPL_FILTER_WIDTH;
-    w->tilesY = (height + VPL_FILTER_HEIGHT - 1) / VPL_FILTER_HEIGHT;
+    w->tilesY = (shading->endRow - shading->firstRow + VPL_FILTER_HEIGHT - 1) / VPL_FILTER_HEIGHT;
+    w->firstTask = shading->firstRow / VPL_FILTER_HEIGHT * w->tilesX;
+    framebuffer->firstRow -= w->side - 1; // the filter reads so far
+    framebuffer->endRow += w->side - 1;
     for (int i = 0; i < workers; i++) {
         vplFacetCache_Clear(&w->scratch[i].facets);
     }
@@ -133,6 +136,7 @@ static void showUnfiltered(void* data, int task, int worker)
     (void)worker;
     const vplShading* s = data;
     const vplInterleave* w = s->state;
+    task += w->firstTask;
     const int x0 = task % w->tilesX * VPL_FILTER_WIDTH, y0 = task / w->tilesX * VPL_FILTER_HEIGHT;
     for (int y = y0; y < y0 + VPL_FILTER_HEIGHT && y < s->image->height; y++) {
         for (int x = x0; x < x0 + VPL_FILTER_WIDTH && x < s->image->width; x++) {

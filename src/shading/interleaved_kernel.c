@@ -7,9 +7,11 @@
 #include "shading/edges.h"
 
 enum {
-    SQUARE = 4,     // blocks along a side that are read and lit directly together
-    MAX_CHUNKS = 11 // 13 x 13 pixels, of 64 x 64 at K = 5
+    SQUARE = 4,                      // blocks along a side that are read and lit directly together
+    MAX_CHUNKS = 11,                 // 13 x 13 pixels, of 64 x 64 at K = 5
+    BORDER = SQUARE * VPL_BLOCK_SIDE // rows beside those that are wanted; windows reach less far
 };
+_Static_assert(BORDER >= VPL_MAX_INTERLEAVE - 1, "windows of the filter reach beyond the border");
 
 // A square of pixels of the tile, of a side that gives a class 16 pixels or more and keeps points in the
 // first-level cache.
@@ -277,11 +279,15 @@ void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
     const vplInterleave* w = s->state;
     const vplTileSums* tileSums = tile->scratch;
     const int side = sideOf(w->side);
-    for (int y = 0; y < tile->height; y += side) {
+    // A tile above or below the rows that are wanted only serves the filter's windows.
+    const bool above = tile->y + tile->height <= s->firstRow, below = tile->y >= s->endRow;
+    const int first = above ? tile->height - BORDER : 0,
+              last = below && BORDER < tile->height ? BORDER : tile->height;
+    for (int y = first; y < last; y += side) {
         for (int x = 0; x < tile->width; x += side) {
             Region r = {.x = x, .y = y};
             r.width = tile->width - x < side ? tile->width - x : side;
-            r.height = tile->height - y < side ? tile->height - y : side;
+            r.height = last - y < side ? last - y : side;
             Class class;
             class.shading = s;
             class.tile = tile;
@@ -293,7 +299,7 @@ void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
             }
         }
     }
-    if (tile->sampleCount > 0) {
+    if (tile->sampleCount > 0 && !above && !below) {
         lightTileEdges(s, tile, &w->scratch[worker].facets);
     }
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);

@@ -28,6 +28,18 @@ static vplResult checkClusters(const vplContext* context, const vplShadeDef* def
     return VPL_SUCCESS;
 }
 
+static vplResult checkRows(const vplContext* context, const vplView* view, const vplShadeDef* def)
+{
+    const int first = def->firstRow, end = def->endRow;
+    const bool good =
+        end == 0 || (first >= 0 && first < end && end <= view->height && first % VPL_TILE_SIDE == 0 &&
+                     (end % VPL_TILE_SIDE == 0 || end == view->height));
+    return good ? VPL_SUCCESS
+                : vplFail(context, VPL_INVALID_ARGUMENT,
+                          "vplShadeDef has rows %d to %d, must be in [0, %d] and multiples of %d", first, end,
+                          view->height, VPL_TILE_SIDE);
+}
+
 // The fields of one accumulation.
 static vplResult checkAccumulation(const vplContext* context, const vplShadeDef* def)
 {
@@ -89,6 +101,7 @@ vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, co
             "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
             c->rayCount, c->hitLights, VPL_MAX_NEAR_RAYS);
     }
+    TRY(checkRows(context, view, def));
     TRY(checkGather(context, def));
     if (def->output == VPL_OUTPUT_BACKGROUND && geometry->environment == NULL) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "a background needs an environment");

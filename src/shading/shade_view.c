@@ -143,6 +143,8 @@ static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats
 {
     vplFramebuffer framebuffer = vplDefaultFramebuffer(s->view->width, s->view->height);
     framebuffer.reversedDepth = true;
+    framebuffer.firstRow = s->firstRow;
+    framebuffer.endRow = s->endRow;
     TRY(makeObjects(s));
     TRY(vplDirectLight_Open(&s->direct, s->arena, s->def->lighting));
     TRY(vplCompensator_Open(s));
@@ -158,6 +160,8 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     TRY(vplShadeDef_Check(geometry, view, def, image));
     vplShadeStats stats = {0};
     vplShading shading = vplShading_Make(geometry, view, def);
+    shading.firstRow = def->endRow > 0 ? def->firstRow : 0;
+    shading.endRow = def->endRow > 0 ? def->endRow : view->height;
     shading.image = image;
     shading.shadowRays = &stats.shadowRays;
     shading.arena = vplArena_Create(geometry->context);

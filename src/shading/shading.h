@@ -79,6 +79,7 @@ typedef struct vplShading {
     bool irradiance;                     // the picture is irradiance of virtual lights, not radiance
     int samples;                         // of coverage, besides centres; even
     bool smoothsRims;                    // tiles keep the irradiance of emitters
+    int firstRow, endRow;                // of the picture, that are wanted
     vplImage* image;                     // the picture
     vplMesh* meshes;                     // one per object
     struct vplObjectUniforms* objects;   // one per object

@@ -53,8 +53,10 @@ static vplResult createPaths(const vplRun* run, Paths* paths)
 {
     const vplPlan* plan = run->plan;
     const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
-    const vplPathDef picture = vplDescribePaths(plan, plan->options.output.show),
-                     direct = vplDescribePaths(plan, VPL_SHOW_DIRECT);
+    vplPathDef picture = vplDescribePaths(plan, plan->options.output.show),
+               direct = vplDescribePaths(plan, VPL_SHOW_DIRECT);
+    picture.firstRow = direct.firstRow = run->firstRow;
+    picture.endRow = direct.endRow = run->endRow;
     TRY(vplPathTracer_Create(g, &picture, &paths->picture));
     return plan->splitsLight ? vplPathTracer_Create(g, &direct, &paths->direct) : VPL_SUCCESS;
 }

@@ -36,8 +36,11 @@ static vplResult addBackground(const vplRun* run, const vplView* view, const vpl
 {
     const bool smooth =
         shown->accumulation >= VPL_ACCUMULATE_DEFERRED; // passes draw surfaces without smooth edges
-    const vplShadeDef def = {
-        .lighting = shown->lighting, .output = VPL_OUTPUT_BACKGROUND, .samples = smooth ? shown->samples : 0};
+    const vplShadeDef def = {.lighting = shown->lighting,
+                             .output = VPL_OUTPUT_BACKGROUND,
+                             .samples = smooth ? shown->samples : 0,
+                             .firstRow = shown->firstRow,
+                             .endRow = shown->endRow};
     vplImage* background;
     TRY(vplImage_Create(run->context, image->width, image->height, &background));
     const vplResult result = vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, &def, background, NULL);
@@ -175,6 +178,8 @@ static vplShadeDef describe(const vplRun* run)
                          .minDistance = v != NULL ? v->minDistance : 0,
                          .particleCount =
                              o->method == VPL_METHOD_DIRECT ? 1 : vplParticlesOfPass(run->plan, run->pass),
+                         .firstRow = run->firstRow,
+                         .endRow = run->endRow,
                          .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL,
                          .progress = run->progress,
                          .progressUser = run->runner};

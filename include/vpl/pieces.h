@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// A picture in pieces, for several processes or machines: each piece is rendered by itself and becomes bytes, and an
+// assembly puts the bytes of all pieces together, in any order, to the bits of vplRender. It needs no scene.
+#ifndef VPL_PIECES_H
+#define VPL_PIECES_H
+
+#include <vpl/render.h>
+
+VPL_HEADER_BEGIN
+
+// How a picture is divided: into its passes, and each pass into bands of rows. Piece i is pass i % passes of band i / passes.
+typedef struct vplPieceGrid {
+    int width, height; // of the picture, pixels
+    int passes;        // path tracing: 1, with all paths
+    int bands;         // the last may have fewer rows
+    int rows;          // of a band: whole tiles, of 64 rows, path tracing of 16
+    int count;         // passes * bands
+} vplPieceGrid;
+
+// Divides the renderer's picture into at most `bands` bands, as many as its tiles allow. The division follows from the plan
+// and `bands` alone. VPL_INVALID_ARGUMENT for pictures that are not made of pieces: those that a time or an error ends, those
+// with layers, and passes with marks drawn over them.
+vplResult vplRenderer_Divide(const vplRenderer* renderer, int bands, vplPieceGrid* gridOut);
+
+// Renders piece `index` of the grid and writes it as bytes, little-endian, which carry the hash of scene and options and a
+// checksum. What all pieces need (geometry, lights of the pass, patches) is kept for the next piece. Interleaved pictures also
+// light 16 rows above and below a band, which the filter reads. The bytes are freed by vplBytes_Free. Pieces leave the
+// renderer's own passes alone. VPL_CANCELLED, VPL_INVALID_ARGUMENT and what vplRenderer_Step fails with.
+vplResult vplRenderer_MakePiece(vplRenderer* renderer, const vplPieceGrid* grid, int index, uint8_t** bytesOut,
+                                size_t* sizeOut);
+
+// A picture that is put together. It holds 36 bytes per pixel for passes, 12 for other pictures, and the pieces of passes
+// that have come before their turn.
+typedef struct vplAssembly vplAssembly;
+
+vplResult vplAssembly_Create(vplContext* context, vplAssembly** assemblyOut);
+
+// NULL is allowed.
+void vplAssembly_Destroy(vplAssembly* assembly);
+
+// Adds the piece at the front of `bytes`, whose length becomes *usedOut, so that a file of several pieces is read by several
+// calls. A piece that is there already is passed over. `name` is for messages. VPL_PARSE_ERROR for bytes that are damaged or
+// not complete, VPL_INVALID_ARGUMENT for a piece of another scene, of other options or of another division.
+vplResult vplAssembly_Add(vplAssembly* assembly, const uint8_t* bytes, size_t size, const char* name,
+                          size_t* usedOut);
+
+// The division; count is 0 before the first piece.
+vplPieceGrid vplAssembly_GetGrid(const vplAssembly* assembly);
+
+bool vplAssembly_Has(const vplAssembly* assembly, int index);
+
+// Returns how many pieces are missing.
+int vplAssembly_CountMissing(const vplAssembly* assembly);
+
+// Gets the whole picture; destroy it with vplImage_Destroy. VPL_INVALID_ARGUMENT names the first piece that is missing.
+vplResult vplAssembly_GetImage(const vplAssembly* assembly, vplImage** imageOut);
+
+VPL_HEADER_END
+
+#endif

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Tests of pictures in pieces: whatever the division and the order, the bits are those of one render.
+#include "test.h"
+
+// Options of one line, for pictures of three bands of tiles.
+static vplRenderOptions optionsOf(const char* words)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    assert_int_equal(vplRenderOptions_SetAll(&o, words), VPL_SUCCESS);
+    o.output.width = 70;
+    o.output.height = 150;
+    return o;
+}
+
+static uint64_t hashOfWhole(const vplScene* scene, const vplRenderOptions* o)
+{
+    vplImage* image;
+    vplRenderStats stats;
+    assert_int_equal(vplRender(scene, o, &image, &stats), VPL_SUCCESS);
+    vplImage_Destroy(image);
+    return stats.imageHash;
+}
+
+// Renders the pieces from the last to the first, each by a renderer of its own, as on another machine.
+static uint64_t hashOfPieces(vplContext* context, const vplScene* scene, const vplRenderOptions* o, int bands)
+{
+    vplAssembly* a;
+    vplPieceGrid grid = {.count = INT32_MAX};
+    assert_int_equal(vplAssembly_Create(context, &a), VPL_SUCCESS);
+    for (int left = 1; left > 0;) {
+        vplRenderer* r;
+        uint8_t* bytes;
+        size_t size = 0, used;
+        assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Divide(r, bands, &grid), VPL_SUCCESS);
+        const vplPieceGrid seen = vplAssembly_GetGrid(a);
+        const int index = (seen.count > 0 ? vplAssembly_CountMissing(a) : grid.count) - 1;
+        assert_int_equal(vplRenderer_MakePiece(r, &grid, index, &bytes, &size), VPL_SUCCESS);
+        assert_int_equal(vplAssembly_Add(a, bytes, size, "piece", &used), VPL_SUCCESS);
+        assert_int_equal(used, size);
+        vplBytes_Free(context, bytes);
+        vplRenderer_Destroy(r);
+        left = vplAssembly_CountMissing(a);
+    }
+    vplImage* image;
+    assert_int_equal(vplAssembly_GetImage(a, &image), VPL_SUCCESS);
+    const uint64_t hash = vplImage_Hash(image);
+    vplImage_Destroy(image);
+    vplAssembly_Destroy(a);
+    return hash;
+}
+
+TEST(PiecesHaveTheBitsOfOneRender, 2)
+{
+    static const char* const CASES[] = {
+        "--method keller --particles 60 --pipeline interleaved --interleave 16",
+        "--method keller --particles 60 --pipeline interleaved --interleave 5 --antialias 8",
+        "--method keller --particles 30 --pipeline deferred --antialias 4 --supersample 2",
+        "--method keller --particles 20 --passes 3",
+        "--method instant-radiosity --particles 8 --pipeline multipass",
+        "--method instant-radiosity --particles 40 --pipeline lightcuts --passes 2",
+        "--method direct --antialias 8",
+        "--method ssvp --first-bounce 40",
+        "--method radiosity --patches 60",
+        "--method path --spp 3"};
+    vplScene* scene;
+    assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        const vplRenderOptions o = optionsOf(CASES[i]);
+        const uint64_t whole = hashOfWhole(scene, &o);
+        for (int bands = 1; bands <= 3; bands += 1 + (bands == 1)) {
+            const uint64_t pieces = hashOfPieces(context, scene, &o, bands);
+            if (pieces != whole) {
+                fail_msg("%s in %d bands: %016llx, must be %016llx", CASES[i], bands, (unsigned long long)pieces,
+                         (unsigned long long)whole);
+            }
+        }
+    }
+    vplScene_Destroy(scene);
+}
+
+TEST(DamagedPiecesAreRefused, 1)
+{
+    const vplRenderOptions o = optionsOf("--method direct --antialias 1");
+    vplScene* scene;
+    vplRenderer* r;
+    vplAssembly* a;
+    vplPieceGrid grid;
+    uint8_t* bytes;
+    size_t size = 0, used = 0;
+    assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Divide(r, 3, &grid), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_MakePiece(r, &grid, 1, &bytes, &size), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_Create(context, &a), VPL_SUCCESS);
+    for (size_t cut = 0; cut < size; cut += cut < 100 ? 1 : size / 50) {
+        assert_int_equal(vplAssembly_Add(a, bytes, cut, "piece", &used), VPL_PARSE_ERROR);
+        bytes[cut] ^= 0x40;
+        assert_int_equal(vplAssembly_Add(a, bytes, size, "piece", &used), VPL_PARSE_ERROR);
+        bytes[cut] ^= 0x40;
+    }
+    vplImage* image = NULL;
+    assert_int_equal(vplAssembly_Add(a, bytes, size, "piece", &used), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_GetImage(a, &image), VPL_INVALID_ARGUMENT);
+    assert_null(image);
+    vplBytes_Free(context, bytes);
+    vplAssembly_Destroy(a);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
