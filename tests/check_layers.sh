@@ -20,6 +20,7 @@ BEGIN {
     allowed["render"] = "render base math image scene geometry raster visibility lights shading radiosity reference"
     allowed["cli"] = "cli public"
     layer["vecmath"] = "math"
+    layer["formulas"] = "visibility"
     layer["options"] = layer["plan"] = layer["pieces"] = "render"
     inner["radiosity"] = "sides factors links solve mesh draw"
 }

@@ -10,6 +10,7 @@
 #include <vpl/geometry.h>
 #include <vpl/raster.h>
 #include <vpl/visibility.h>
+#include <vpl/formulas.h>
 #include <vpl/lights.h>
 #include <vpl/shading.h>
 #include <vpl/radiosity.h>
