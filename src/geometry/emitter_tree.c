@@ -300,8 +300,15 @@ static inline Angle angleOf(double cosine)
     return (Angle){cosine, square > 0 ? sqrt(square) : 0};
 }
 
-// An upper bound of the strength that reaches the point, over the squared distance; 0 only where no source of the node
-// lights it. Inside of the sphere nothing is known of directions.
+// A mean of two cosines of an angle: the largest in a node, which keeps its sources, and that of its centre, which tells
+// halves apart. Variance is 0.3 to 0.7 of that with the largest alone (halls with 100 and 1,000 lamps).
+static inline double blend(double largest, double middle)
+{
+    return 0.125 * largest + 0.875 * (middle > 0 ? middle : 0);
+}
+
+// About the strength that reaches the point, over the squared distance; 0 only where no source of the node lights it.
+// Inside of the sphere nothing is known of directions.
 static double importance(const Node* node, vplVec3 p, vplVec3 n)
 {
     const double x = (double)node->centre[0] - p.x, y = (double)node->centre[1] - p.y,
@@ -310,9 +317,8 @@ static double importance(const Node* node, vplVec3 p, vplVec3 n)
     if (d2 <= r2) {
         return r2 > 0 ? node->strength / r2 : 0;
     }
-    const double inverse = 1 / sqrt(d2), sinBox = node->radius * inverse,
-                 cosBox = sqrt(1 - sinBox * sinBox);
-    const double facing = (n.x * x + n.y * y + n.z * z) * inverse;
+    const double inverse = 1 / sqrt(d2), sinBox = node->radius * inverse;
+    const double cosBox = sqrt(1 - sinBox * sinBox), facing = (n.x * x + n.y * y + n.z * z) * inverse;
     const double received = subtract(angleOf(facing), cosBox, sinBox).cosine + MARGIN;
     if (received <= 0) {
         return 0;
@@ -320,14 +326,15 @@ static double importance(const Node* node, vplVec3 p, vplVec3 n)
     double sent = 1;
     if (node->cosSpread > -1) {
         const double off = -(node->axis[0] * x + node->axis[1] * y + node->axis[2] * z) * inverse;
-        const Angle beyond =
-            subtract(subtract(angleOf(off), (double)node->cosSpread, (double)node->sinSpread), cosBox, sinBox);
-        if (beyond.cosine <= (double)node->cosReach - MARGIN) {
+        const Angle beyond = subtract(angleOf(off), (double)node->cosSpread, (double)node->sinSpread);
+        const double least = subtract(beyond, cosBox, sinBox).cosine;
+        if (least <= (double)node->cosReach - MARGIN) {
             return 0;
         }
-        sent = beyond.cosine > 0 ? beyond.cosine + MARGIN : MARGIN;
+        sent = blend(least > 0 ? least + MARGIN : MARGIN,
+                     beyond.cosine > (double)node->cosReach ? beyond.cosine : 0);
     }
-    return node->strength * received * sent / d2;
+    return node->strength * blend(received, facing) * sent / d2;
 }
 
 // The share of the left half; negative where neither half lights the point.

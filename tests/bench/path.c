@@ -117,7 +117,7 @@ static vplResult measure(const vplGeometry* geometry, const vplPathDef* def, int
     return result;
 }
 
-static int run(const vplScene* scene, const vplGeometry* geometry, int samples, int size,
+static int run(const vplScene* scene, const vplGeometry* geometry, const vplEmitterDef* emitters, int samples, int size,
                const char* only)
 {
     double first = 0;
@@ -130,7 +130,7 @@ static int run(const vplScene* scene, const vplGeometry* geometry, int samples, 
         vplPathDef def = vplDefaultPathDef();
         def.camera = vplScene_GetCamera(scene, 0);
         def.emitterCount = vplScene_GetEmitterCount(scene);
-        def.emitters = def.emitterCount ? vplScene_GetEmitter(scene, 0) : NULL;
+        def.emitters = emitters;
         def.width = def.height = size;
         def.emission = false; // aliasing at the edges of visible emitters would dominate the error
         LINES[i].adjust(&def);
@@ -170,8 +170,14 @@ int main(int count, char** words)
     if (vplContext_Create(&def, &context) == VPL_SUCCESS &&
         vplScene_Load(context, path, &scene) == VPL_SUCCESS &&
         vplGeometry_Create(scene, &geometry) == VPL_SUCCESS) {
-        code = run(scene, geometry, count > 2 ? atoi(words[2]) : 32, count > 3 ? atoi(words[3]) : 96,
+        const int emitterCount = vplScene_GetEmitterCount(scene);
+        vplEmitterDef* emitters = calloc((size_t)emitterCount + 1, sizeof *emitters);
+        for (int i = 0; i < emitterCount && emitters != NULL; i++) {
+            emitters[i] = *vplScene_GetEmitter(scene, i);
+        }
+        code = emitters == NULL ? 1 : run(scene, geometry, emitters, count > 2 ? atoi(words[2]) : 32, count > 3 ? atoi(words[3]) : 96,
                    count > 4 ? words[4] : NULL);
+        free(emitters);
     }
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);
