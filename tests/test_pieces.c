@@ -71,8 +71,8 @@ TEST(PiecesHaveTheBitsOfOneRender, 2)
         for (int bands = 1; bands <= 3; bands += 1 + (bands == 1)) {
             const uint64_t pieces = hashOfPieces(context, scene, &o, bands);
             if (pieces != whole) {
-                fail_msg("%s in %d bands: %016llx, must be %016llx", CASES[i], bands, (unsigned long long)pieces,
-                         (unsigned long long)whole);
+                fail_msg("%s in %d bands: %016llx, must be %016llx", CASES[i], bands,
+                         (unsigned long long)pieces, (unsigned long long)whole);
             }
         }
     }

@@ -26,8 +26,8 @@ vplResult vplRenderer_Divide(const vplRenderer* renderer, int bands, vplPieceGri
 // checksum. What all pieces need (geometry, lights of the pass, patches) is kept for the next piece. Interleaved pictures also
 // light 16 rows above and below a band, which the filter reads. The bytes are freed by vplBytes_Free. Pieces leave the
 // renderer's own passes alone. VPL_CANCELLED, VPL_INVALID_ARGUMENT and what vplRenderer_Step fails with.
-vplResult vplRenderer_MakePiece(vplRenderer* renderer, const vplPieceGrid* grid, int index, uint8_t** bytesOut,
-                                size_t* sizeOut);
+vplResult vplRenderer_MakePiece(vplRenderer* renderer, const vplPieceGrid* grid, int index,
+                                uint8_t** bytesOut, size_t* sizeOut);
 
 // A picture that is put together. It holds 36 bytes per pixel for passes, 12 for other pictures, and the pieces of passes
 // that have come before their turn.

@@ -117,8 +117,9 @@ typedef struct vplPlan {
     bool usualSpeeds;            // they are those of vplUsualSpeeds, and not of this machine
     vplLook look;                // of --method auto
     char problem[VPL_PLAN_TEXT]; // why the picture cannot be rendered; empty: it can
-    vplResult refusal;           // the result of rendering it all the same: VPL_INVALID_ARGUMENT or VPL_LIMIT
-    struct vplArena* arena;      // owns the emitters
+    vplResult refusal;      // the result of rendering it all the same: VPL_INVALID_ARGUMENT, VPL_LIMIT or
+                            // VPL_OUT_OF_MEMORY
+    struct vplArena* arena; // owns the emitters
 } vplPlan;
 
 // Times of the parts of a render, nanoseconds of one thread, > 0; by them vplPlan.predictedMs is predicted.

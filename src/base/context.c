@@ -141,6 +141,11 @@ size_t vplContext_GetBytes(const vplContext* context)
     return context->bytes;
 }
 
+void vplContext_SetMemoryLimit(vplContext* context, size_t bytes)
+{
+    context->memoryLimit = bytes;
+}
+
 size_t vplContext_GetPeakBytes(const vplContext* context)
 {
     return context->peakBytes;

@@ -25,6 +25,7 @@ struct vplContext {
     int workerCount;
     // Bytes held now, and the most held at once. Not atomic: parallel sections do not allocate.
     size_t bytes, peakBytes;
+    size_t memoryLimit; // of plans, bytes; 0: none
     vplWatch watch;
     atomic_bool cancelled;    // the loop of tasks under way
     uint64_t stamps;          // see vplNextStamp

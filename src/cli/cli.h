@@ -81,6 +81,7 @@ struct Arguments {
     int regions[2];                  // columns and rows; 0: none
     int threads[MAX_THREAD_COUNTS], threadsCount;
     int runs, seeds, referenceSpp;
+    int memoryMib;  // --memory; 0: what the machine has
     double seconds; // --time
     const char *stage, *reference, *sweeps;
     bool all, scaling, extremes, calibrate, json, explain, dryRun, noGround, noPartial, quiet, verbose, help;

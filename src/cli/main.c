@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 void complain(const char* format, ...)
 {
@@ -28,13 +29,24 @@ void logToStderr(void* user, vplLogLevel level, const char* message)
     }
 }
 
+// Nine tenths of the machine's memory: the rest is for the system and for what the plan gets wrong. 0 where the system does
+// not say how much there is.
+static size_t usableBytes(void)
+{
+    const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
+    return pages > 0 && size > 0 ? (size_t)pages / 10 * 9 * (size_t)size : 0;
+}
+
 vplContext* openContext(const Arguments* arguments)
 {
     vplContextDef def = arguments->context;
     def.log = logToStderr;
     def.logUser = (void*)arguments;
     vplContext* context = NULL;
-    vplContext_Create(&def, &context);
+    if (vplContext_Create(&def, &context) == VPL_SUCCESS) {
+        const size_t mib = (size_t)arguments->memoryMib << 20;
+        vplContext_SetMemoryLimit(context, mib > 0 ? mib : usableBytes());
+    }
     return context;
 }
 
@@ -102,7 +114,7 @@ static int explain(const Arguments* a, const vplScene* scene)
     int code = exitCode(planRender(a, scene, &plan), true);
     if (code == EXIT_DONE && a->dryRun && plan->problem[0] != 0) {
         complain("%s", plan->problem);
-        code = EXIT_USAGE;
+        code = exitCode(plan->refusal, false);
     } else if (code == EXIT_DONE) {
         code = printPlan(plan, a->dryRun ? stdout : stderr);
         if (code == EXIT_DONE && a->dryRun && a->planOut != NULL) {

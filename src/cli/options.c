@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -303,6 +304,9 @@ static const Option OWN[] = {
      NULL},
     {"threads", "T", NULL, ~INFO, readThreads, 0, 0, 0,
      "worker threads, 0 (default, tradeoff: 1): one per processor; bench takes several: 1,2", NULL},
+    {"memory", "MIB", NULL, RENDER | LIGHTS, readInt, AT(memoryMib), 1, INT_MAX,
+     "refuse pictures that need more memory than this, MiB; usual: than nine tenths of what the machine has",
+     NULL},
     {"isa", "auto|scalar|sse2|avx2|avx512", "auto", ~(INFO | COMPARE), readChoice, AT(context.isa), 0, 0,
      "instruction set: the same bits", NULL},
     {"quiet", NULL, NULL, ~0, readFlag, AT(quiet), 0, 0, "no progress bar, no warnings", NULL},

@@ -8,8 +8,48 @@
 vplPathDef vplDefaultPathDef(void)
 {
     // rouletteFrom: least variance for the time in rooms (bench/path).
-    return (vplPathDef){
-        .lastBounce = 1 << 16, .emission = true, .techniques = VPL_PATH_ALL, .rouletteFrom = 0.25};
+    return (vplPathDef){.lastBounce = 1 << 16,
+                        .emission = true,
+                        .techniques = VPL_PATH_ALL,
+                        .rouletteFrom = 0.25,
+                        .emittersOfTree = VPL_PATH_EMITTERS_OF_TREE,
+                        .trianglesOfTree = VPL_PATH_TRIANGLES_OF_TREE};
+}
+
+static vplResult listDirectional(vplPathScene* s)
+{
+    const vplEmission* e = s->emission;
+    s->directional = vplAlloc(e->context, (size_t)e->emitterCount, sizeof *s->directional);
+    for (int i = 0; i < e->emitterCount && s->directional != NULL; i++) {
+        if (e->emitters[i].type == VPL_EMITTER_DIRECTIONAL) {
+            s->directional[s->directionalCount++] = i;
+        }
+    }
+    return s->directional != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+static vplResult makeTrees(vplPathScene* s)
+{
+    const vplEmission* e = s->emission;
+    const int emitters = e->environment >= 0 ? e->environment : e->firstTriangle;
+    if (emitters >= s->def.emittersOfTree) {
+        TRY(vplEmitterTree_Create(e, 0, emitters, &s->emitterTree));
+        TRY(s->emitterTree != NULL ? listDirectional(s) : VPL_SUCCESS);
+    }
+    return e->sourceCount - e->firstTriangle >= s->def.trianglesOfTree
+               ? vplEmitterTree_Create(e, e->firstTriangle, e->sourceCount, &s->triangleTree)
+               : VPL_SUCCESS;
+}
+
+void vplPathScene_Free(vplPathScene* s)
+{
+    vplEmitterTree_Destroy(s->emitterTree);
+    vplEmitterTree_Destroy(s->triangleTree);
+    vplEmission_Destroy(s->emission);
+    s->emission = NULL;
+    vplFree(s->geometry->context, s->directional);
+    s->emitterTree = s->triangleTree = NULL;
+    s->directional = NULL;
 }
 
 vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const vplPathDef* def)
@@ -31,7 +71,11 @@ vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const 
         s->skyShare = (sums[1] - sums[0]) / s->power / (VPL_PI * s->emission->radius * s->emission->radius);
     }
     s->trianglePower = s->power - s->emission->cumulative[s->emission->firstTriangle];
-    return VPL_SUCCESS;
+    const vplResult result = makeTrees(s);
+    if (result != VPL_SUCCESS) {
+        vplPathScene_Free(s);
+    }
+    return result;
 }
 
 void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4])

@@ -50,7 +50,7 @@ vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* de
 void vplPathTracer_Destroy(vplPathTracer* tracer)
 {
     if (tracer != NULL) {
-        vplEmission_Destroy(tracer->scene.emission);
+        vplPathScene_Free(&tracer->scene);
         vplArena_Destroy(tracer->arena);
     }
 }

@@ -16,8 +16,7 @@ vplResult vplSparsePaths_Init(vplSparsePaths* paths, const vplGeometry* geometry
 
 void vplSparsePaths_Free(vplSparsePaths* paths)
 {
-    vplEmission_Destroy(paths->scene.emission);
-    paths->scene.emission = NULL;
+    vplPathScene_Free(&paths->scene);
 }
 
 // The same paths as those of a path-traced picture.

@@ -77,8 +77,9 @@ static vplResult checkSame(const vplAssembly* a, const vplPieceHeader* h, const 
 {
     const vplPieceHeader* f = &a->first;
     if (h->scene != f->scene || h->options != f->options) {
-        return vplFail(a->context, VPL_INVALID_ARGUMENT, "%s: a part of another picture than the first: %s differ",
-                       name, h->scene != f->scene ? "scene or camera" : "options");
+        return vplFail(a->context, VPL_INVALID_ARGUMENT,
+                       "%s: a part of another picture than the first: %s differ", name,
+                       h->scene != f->scene ? "scene or camera" : "options");
     }
     if (memcmp(&h->grid, &f->grid, sizeof h->grid) != 0 || h->mean != f->mean) {
         return vplFail(a->context, VPL_INVALID_ARGUMENT,
@@ -128,7 +129,8 @@ static vplResult take(vplAssembly* a, const vplPieceHeader* h, const uint8_t* by
         return VPL_OUT_OF_MEMORY;
     }
     if (!h->mean || place.pass == 0) {
-        vplStream_Floats(&s, a->base->pixels + 3 * (size_t)place.firstRow * (size_t)h->grid.width, place.values);
+        vplStream_Floats(&s, a->base->pixels + 3 * (size_t)place.firstRow * (size_t)h->grid.width,
+                         place.values);
     }
     if (h->mean) {
         vplStream_Floats(&s, values, place.values);
@@ -147,7 +149,8 @@ static vplResult take(vplAssembly* a, const vplPieceHeader* h, const uint8_t* by
     return VPL_SUCCESS;
 }
 
-vplResult vplAssembly_Add(vplAssembly* a, const uint8_t* bytes, size_t size, const char* name, size_t* usedOut)
+vplResult vplAssembly_Add(vplAssembly* a, const uint8_t* bytes, size_t size, const char* name,
+                          size_t* usedOut)
 {
     vplPieceHeader h;
     const bool opens = a->first.grid.count == 0;
@@ -187,8 +190,8 @@ static vplResult failIncomplete(const vplAssembly* a)
     }
     const vplPiecePlace place = vplPieceGrid_Place(g, index);
     return vplFail(a->context, VPL_INVALID_ARGUMENT,
-                   "%d of %d pieces of the picture are missing; the first is pass %d of rows %d to %d", a->missing,
-                   g->count, place.pass, place.firstRow, place.endRow - 1);
+                   "%d of %d pieces of the picture are missing; the first is pass %d of rows %d to %d",
+                   a->missing, g->count, place.pass, place.firstRow, place.endRow - 1);
 }
 
 vplResult vplAssembly_GetImage(const vplAssembly* a, vplImage** imageOut)

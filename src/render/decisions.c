@@ -37,6 +37,14 @@ static int squareOfRays(int rays)
     return rays < 64 ? 8 : 4;
 }
 
+enum { MOST_RSM = 1024, LEAST_RSM = 16 }; // texels along a side
+
+// A distance and a triangle per texel.
+static double rsmBytes(const vplPlan* p, int size)
+{
+    return vplReflectiveMapFaces(p) * 8 * size * size;
+}
+
 static void choosePipeline(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
@@ -64,11 +72,16 @@ static void choosePipeline(vplPlan* p)
         }
     }
     if (o->shadow.rsmSize == 0) {
-        o->shadow.rsmSize = ssvp ? 1024 : 256;
+        const int usual = ssvp ? MOST_RSM : 256;
+        o->shadow.rsmSize = usual;
+        while (o->shadow.rsmSize > LEAST_RSM && rsmBytes(p, o->shadow.rsmSize) > VPL_MAX_EMITTER_MAP_BYTES) {
+            o->shadow.rsmSize /= 2;
+        }
         if (ssvp || o->particles.placement == VPL_PLACEMENT_RSM) {
             vplDecide(p, "rsm-size",
-                      ssvp ? "direct light takes its shadows from it, too"
-                           : "first hits need no more texels");
+                      o->shadow.rsmSize < usual ? "maps of all emitters together take 1 GiB at most"
+                      : ssvp                    ? "direct light takes its shadows from it, too"
+                                                : "first hits need no more texels");
         }
     }
 }
@@ -175,7 +188,10 @@ static void chooseShadows(vplPlan* p)
     const bool documented = p->shading == VPL_LIGHTING_DOCUMENTED;
     const bool pair = o->shadow.bias >= 0 || o->shadow.biasSlope >= 0;
     const bool exact = o->shadow.bias == VPL_BIAS_OPTION_EXACT;
-    p->emitterRays = o->lights.shadows == VPL_LIGHT_SHADOWS_RAY;
+    // The document's shadows are those of maps, however many there are.
+    const double maps = o->method == VPL_METHOD_SSVP ? rsmBytes(p, MOST_RSM) : vplEmitterMapBytes(p);
+    p->emitterRays =
+        o->lights.shadows == VPL_LIGHT_SHADOWS_RAY || (!documented && maps > VPL_MAX_EMITTER_MAP_BYTES);
     p->biasRule = pair || (documented && !exact) ? VPL_BIAS_PAIR : VPL_BIAS_EXACT;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
         o->lights.shadows = o->method == VPL_METHOD_KELLER ? VPL_LIGHT_SHADOWS_AUTO

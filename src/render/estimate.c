@@ -34,8 +34,13 @@ static int countMaps(const vplPlan* p, bool points)
     return count;
 }
 
-// Faces of the reflective maps of all emitters.
-static double rsmFaces(const vplPlan* p)
+double vplEmitterMapBytes(const vplPlan* p)
+{
+    const double texels = (double)p->options.shadow.mapSize * p->options.shadow.mapSize;
+    return countMaps(p, false) * 6 * texels * sizeof(float);
+}
+
+double vplReflectiveMapFaces(const vplPlan* p)
 {
     return p->emitterCount + 5.0 * countMaps(p, true);
 }
@@ -204,21 +209,19 @@ static Bytes estimate(const Scale* s, vplStageId id)
 {
     const vplPlan* p = s->plan;
     const vplRenderOptions* o = &p->options;
-    const double shadowTexels = (double)o->shadow.mapSize * o->shadow.mapSize,
-                 rsmTexels = (double)o->shadow.rsmSize * o->shadow.rsmSize;
+    const double rsmTexels = (double)o->shadow.rsmSize * o->shadow.rsmSize;
     const bool sampled = vplSsvpSamplesMaps(p),
                surfaces = (vplSsvpHasSecondBounce(p) && sampled) || vplSsvpShowsClusters(p);
     switch (id) {
     case VPL_STAGE_EMITTER_MAPS:
-        return (Bytes){countMaps(p, false) * 6 * shadowTexels * sizeof(float) +
-                           p->emitterCount * (double)sizeof(vplShadow),
+        return (Bytes){vplEmitterMapBytes(p) + p->emitterCount * (double)sizeof(vplShadow),
                        2e5 + RASTER_CUBE * s->triangles};
     case VPL_STAGE_AREA_LIGHTS:
         return (Bytes){(o->lights.areaLightSamples + (p->hasSky ? o->lights.skySamples : 0)) *
                            (double)sizeof(vplShadeLight),
                        0};
     case VPL_STAGE_REFLECTIVE_MAPS: // a distance and a triangle per texel
-        return (Bytes){rsmFaces(p) * rsmTexels * 8, 1.5e5 + RASTER_VIEW * s->triangles};
+        return (Bytes){vplReflectiveMapFaces(p) * rsmTexels * 8, 1.5e5 + RASTER_VIEW * s->triangles};
     case VPL_STAGE_PARTICLES: // two counts and a flag per particle
         return (Bytes){s->lights * sizeof(vplVirtualLight), 3e4 + 9.0 * o->particles.count};
     case VPL_STAGE_FIRST_BOUNCE: // and the samples of the map
@@ -304,7 +307,7 @@ static void countDraws(const Scale* s, vplPlan* p)
         return;
     }
     if (o->method == VPL_METHOD_SSVP) {
-        p->drawCalls = objects * ((int64_t)rsmFaces(p) + supersample);
+        p->drawCalls = objects * ((int64_t)vplReflectiveMapFaces(p) + supersample);
         return;
     }
     const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;

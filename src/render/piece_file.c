@@ -84,7 +84,8 @@ vplResult vplPiece_Read(const vplContext* context, const uint8_t* bytes, size_t 
     vplStream s = {.bytes = (uint8_t*)bytes, .finite = true};
     vplPieceHeader h = {.index = 0};
     if (size < sizeof MAGIC || memcmp(bytes, MAGIC, sizeof MAGIC) != 0) {
-        return vplFail(context, VPL_PARSE_ERROR, "%s: not a part of a picture, which begins with VPLPIECE", name);
+        return vplFail(context, VPL_PARSE_ERROR, "%s: not a part of a picture, which begins with VPLPIECE",
+                       name);
     }
     if (size < VPL_PIECE_HEADER_BYTES) {
         return vplFail(context, VPL_PARSE_ERROR, "%s: ends within the header of a piece: it is not complete",

@@ -13,7 +13,7 @@ typedef struct vplPieceHeader {
     uint64_t scene, options; // hashes
     vplPieceGrid grid;
     int index;
-    bool mean;  // the picture is its first floats plus the mean of all passes
+    bool mean;    // the picture is its first floats plus the mean of all passes
     double share; // weight of the pass
 } vplPieceHeader;
 

@@ -49,8 +49,8 @@ vplResult vplRenderer_Divide(const vplRenderer* r, int bands, vplPieceGrid* grid
     g.bands = (o->height + g.rows - 1) / g.rows;
     g.passes = p->progressive ? p->options.stop.passes : 1;
     if (g.passes > INT32_MAX / g.bands) {
-        return vplFail(r->runner.run.context, VPL_LIMIT, "%d passes in %d bands are more than %d pieces", g.passes,
-                       g.bands, INT32_MAX);
+        return vplFail(r->runner.run.context, VPL_LIMIT, "%d passes in %d bands are more than %d pieces",
+                       g.passes, g.bands, INT32_MAX);
     }
     g.count = g.passes * g.bands;
     *gridOut = g;
@@ -118,7 +118,8 @@ static vplResult writePiece(vplContext* context, vplPieceHeader* h, vplImage* im
     }
     vplPiece_StreamHeader(&s, h);
     for (int i = 0; i < vplPiece_CountArrays(h); i++) {
-        vplStream_Floats(&s, images[i]->pixels + 3 * (size_t)place.firstRow * (size_t)h->grid.width, place.values);
+        vplStream_Floats(&s, images[i]->pixels + 3 * (size_t)place.firstRow * (size_t)h->grid.width,
+                         place.values);
     }
     uint64_t checksum = vplState_Checksum(s.bytes, s.at);
     vplStream_Long(&s, &checksum);
@@ -135,7 +136,8 @@ vplResult vplRenderer_MakePiece(vplRenderer* r, const vplPieceGrid* grid, int in
     TRY(vplRenderer_Divide(r, grid->bands, &own));
     if (memcmp(&own, grid, sizeof own) != 0 || index < 0 || index >= own.count) {
         return vplFail(run->context, VPL_INVALID_ARGUMENT,
-                       "vplRenderer_MakePiece: piece %d of another division, must be in [0, %d)", index, own.count);
+                       "vplRenderer_MakePiece: piece %d of another division, must be in [0, %d)", index,
+                       own.count);
     }
     const vplPiecePlace place = vplPieceGrid_Place(grid, index);
     vplPieceHeader h = {.scene = vplRenderer_HashScene(r),

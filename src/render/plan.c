@@ -236,6 +236,25 @@ static vplResult decideAll(vplRunner* r, vplPlan* p)
     return r->foretells ? vplForetellClusters(r, p) : VPL_SUCCESS;
 }
 
+// Names the stage that takes most.
+static void refuseMemory(const vplContext* context, vplPlan* p)
+{
+    const double mib = 1 / 1048576.0;
+    const vplPlanStage* most = &p->stages[0];
+    if (context->memoryLimit == 0 || p->problem[0] != 0 || p->peakBytes <= (int64_t)context->memoryLimit) {
+        return;
+    }
+    for (int i = 1; i < p->stageCount; i++) {
+        most = p->stages[i].bytes + p->stages[i].scratch > most->bytes + most->scratch ? &p->stages[i] : most;
+    }
+    p->refusal = VPL_OUT_OF_MEMORY;
+    snprintf(p->problem, sizeof p->problem,
+             "the picture needs about %.0f MiB of memory, and %.0f MiB are allowed; %.0f MiB of them are "
+             "for: %s (%.80s)",
+             mib * (double)p->peakBytes, mib * (double)context->memoryLimit,
+             mib * (double)(most->bytes + most->scratch), most->name, most->why);
+}
+
 vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMachine* machine,
                       vplPlan** planOut)
 {
@@ -254,6 +273,7 @@ vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMa
     }
     if (result == VPL_SUCCESS && r->run.results[VPL_STAGE_GEOMETRY] != NULL) {
         result = vplEstimatePlan(r, machine, p);
+        refuseMemory(r->run.context, p);
     }
     if (result == VPL_SUCCESS && r->run.results[VPL_STAGE_GEOMETRY] != NULL) {
         vplEstimateTime(r, machine, p);

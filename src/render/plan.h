@@ -27,6 +27,14 @@ static inline double vplPlan_DrawnPatches(const vplPlan* plan)
     return (double)plan->patches - plan->patchGroups + plan->groupedTriangles;
 }
 
+// The most that shadow maps of all emitters may take together, and reflective maps that choose their own size: rays cast the
+// shadows of more, and reflective maps are smaller. Maps of 44 points of 1024^2 texels, after which rays take about as long.
+#define VPL_MAX_EMITTER_MAP_BYTES 1073741824.0
+
+// Bytes of the shadow maps of all emitters, and faces of their reflective maps.
+double vplEmitterMapBytes(const vplPlan* plan);
+double vplReflectiveMapFaces(const vplPlan* plan);
+
 vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 
 // Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.

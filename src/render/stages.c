@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The table of stages, and when a picture needs each.
+#include "render/plan.h"
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
@@ -52,8 +53,11 @@ static bool needsEmitterMaps(const vplPlan* p, char* why)
     const char* problem = !p->showsDirect && !p->compensates     ? NOT_DIRECT
                           : p->options.method == VPL_METHOD_SSVP ? "reflective maps serve as shadow maps"
                           : casting == 0                         ? "no emitter is a point or a spot"
-                          : p->emitterRays                       ? "rays replace shadow maps"
                                                                  : NULL;
+    if (problem == NULL && p->emitterRays) {
+        return because(why, false, "rays replace shadow maps, which would take %.0f MiB",
+                       vplEmitterMapBytes(p) / 1048576);
+    }
     return problem != NULL ? because(why, false, "%s", problem)
                            : because(why, true, "shadows of %d emitter%s with 6 faces of %d^2 texels",
                                      casting, casting > 1 ? "s" : "", p->options.shadow.mapSize);

@@ -10,7 +10,8 @@
 
 double vplFormula_PlaneBias(double distance, double planeAngle, double sampleAngle)
 {
-    if (!(distance >= 0 && planeAngle >= 0 && planeAngle < HALF_PI && sampleAngle >= 0 && sampleAngle < HALF_PI)) {
+    if (!(distance >= 0 && planeAngle >= 0 && planeAngle < HALF_PI && sampleAngle >= 0 &&
+          sampleAngle < HALF_PI)) {
         return NAN;
     }
     return distance * (1 - cos(planeAngle) / cos(fmax(planeAngle - sampleAngle, 0)));

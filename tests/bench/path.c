@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Measures the value of the path tracer's techniques: error of the picture, rays, time, and variance times
-// time relative to the first line of each group (smaller is better). `bench/path SCENE [SAMPLES [SIZE]]`.
+// time relative to the first line of each group (smaller is better). `bench/path SCENE [SAMPLES [SIZE
+// [GROUP|NAME]]]`.
 #include "cli/bench/measure.h"
 #include "reference/path_trace.h"
 
 #include <vpl/vpl.h>
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct Line {
     const char* group;
@@ -65,6 +68,16 @@ static void rouletteAt64th(vplPathDef* def)
     def->rouletteFrom = 1.0 / 64;
 }
 
+static void eachEmitter(vplPathDef* def)
+{
+    def->emittersOfTree = def->trianglesOfTree = INT_MAX;
+}
+
+static void tree(vplPathDef* def)
+{
+    def->emittersOfTree = def->trianglesOfTree = 1;
+}
+
 static const Line LINES[] = {
     {"numbers", "scrambled Sobol'", asItIs},
     {"numbers", "random", randomNumbers},
@@ -78,6 +91,8 @@ static const Line LINES[] = {
     {"roulette", "below a half", rouletteAtHalf},
     {"roulette", "below an eighth", rouletteAtEighth},
     {"roulette", "below a 64th", rouletteAt64th},
+    {"lamps", "all, triangles by power", eachEmitter},
+    {"lamps", "from a tree", tree},
 };
 
 static vplResult measure(const vplGeometry* geometry, const vplPathDef* def, int samples, vplPathStats* stats,
@@ -102,16 +117,20 @@ static vplResult measure(const vplGeometry* geometry, const vplPathDef* def, int
     return result;
 }
 
-static int run(const vplScene* scene, const vplGeometry* geometry, int samples, int size)
+static int run(const vplScene* scene, const vplGeometry* geometry, const vplEmitterDef* emitters, int samples,
+               int size, const char* only)
 {
     double first = 0;
     printf("%-9s %-28s %10s %8s %9s %9s %9s\n", "", "", "error", "of mean", "rays/path", "Mrays/s",
            "var*time");
     for (size_t i = 0; i < sizeof LINES / sizeof *LINES; i++) {
+        if (only != NULL && strcmp(only, LINES[i].group) != 0 && strcmp(only, LINES[i].name) != 0) {
+            continue;
+        }
         vplPathDef def = vplDefaultPathDef();
         def.camera = vplScene_GetCamera(scene, 0);
         def.emitterCount = vplScene_GetEmitterCount(scene);
-        def.emitters = def.emitterCount ? vplScene_GetEmitter(scene, 0) : NULL;
+        def.emitters = emitters;
         def.width = def.height = size;
         def.emission = false; // aliasing at the edges of visible emitters would dominate the error
         LINES[i].adjust(&def);
@@ -121,7 +140,7 @@ static int run(const vplScene* scene, const vplGeometry* geometry, int samples, 
             return 1;
         }
         double cost = stats.errorEstimate * stats.errorEstimate * ms;
-        if (i == 0 || LINES[i].group != LINES[i - 1].group) {
+        if (i == 0 || strcmp(LINES[i].group, LINES[i - 1].group) != 0) {
             first = cost;
         }
         printf("%-9s %-28s %10.4g %7.2f%% %9.2f %9.2f %9.2f\n", LINES[i].group, LINES[i].name,
@@ -151,7 +170,15 @@ int main(int count, char** words)
     if (vplContext_Create(&def, &context) == VPL_SUCCESS &&
         vplScene_Load(context, path, &scene) == VPL_SUCCESS &&
         vplGeometry_Create(scene, &geometry) == VPL_SUCCESS) {
-        code = run(scene, geometry, count > 2 ? atoi(words[2]) : 32, count > 3 ? atoi(words[3]) : 96);
+        const int emitterCount = vplScene_GetEmitterCount(scene);
+        vplEmitterDef* emitters = calloc((size_t)emitterCount + 1, sizeof *emitters);
+        for (int i = 0; i < emitterCount && emitters != NULL; i++) {
+            emitters[i] = *vplScene_GetEmitter(scene, i);
+        }
+        code = emitters == NULL ? 1
+                                : run(scene, geometry, emitters, count > 2 ? atoi(words[2]) : 32,
+                                      count > 3 ? atoi(words[3]) : 96, count > 4 ? words[4] : NULL);
+        free(emitters);
     }
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: MIT
+// Based on: Alejandro Conty Estevez and Christopher Kulla, Importance Sampling of Many Lights with Adaptive Tree
+// Splitting, HPG 2018, for the importance of a node by power, distance and orientation; Matt Pharr, Wenzel Jakob and
+// Greg Humphreys, Physically Based Rendering, 4th edition 2023, section 12.6.3, for its bounds without angles. Departs:
+// nodes are halved at the middle of the longest side of the boxes of centres and axes, as those of the light tree of
+// Lightcuts are (src/lights/light_tree.c), whose nodes bound points with one lobe and carry representatives.
+#include "geometry/emitter_tree.h"
+#include "base/arena.h"
+#include "geometry/emission.h"
+#include "geometry/triangle.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+#include <float.h>
+
+enum { MAX_HALVINGS = 64 }; // deeper nodes are split into halves of equal count
+
+// Weight of axes: a difference of 1 counts as much as this share of the diagonal of all sources.
+static const double TURN = 0.25;
+
+// Bounds of cosines are wider by this, because the directions of sources and normals are rounded.
+static const double MARGIN = 1e-6;
+
+// A source while the tree is built, or a node with the sources that it bounds.
+typedef struct Bound {
+    double low[3], high[3]; // box
+    vplVec3 axis;
+    double cosSpread,
+        sinSpread;   // of the cone around the axis that holds all axes; a point light's is a full turn
+    double cosReach; // light leaves in directions up to this angle off some axis in the cone
+    double strength; // intensity on the axis, W/sr, mean of the channels
+} Bound;
+
+// Nodes of n sources are 2n - 1: the node, those of its left half, those of its right half.
+typedef struct Node {
+    float centre[3], radius; // of a sphere around the box
+    float axis[3];
+    float cosSpread, sinSpread, cosReach;
+    double strength;
+    int left; // sources in the left half; 0: one source
+} Node;
+
+struct vplEmitterTree {
+    const vplEmission* emission;
+    Node* nodes;
+    int* sources;   // in the order of leaves
+    int* positions; // in that order, of source first + i; without meaning where it is not in the tree
+    int first, end, count;
+    vplArena* arena;
+};
+
+// ---- sources
+
+static Bound boundTriangle(const vplGeometry* g, int triangle)
+{
+    const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
+    const vplRgb radiance = g->materials[g->triangleMaterials[triangle]].emission;
+    Bound b = {.axis = g->normals[triangle], .cosSpread = 1};
+    for (int k = 0; k < 3; k++) {
+        const vplVec3 p = t.corner[k];
+        const double at[3] = {p.x, p.y, p.z};
+        for (int i = 0; i < 3; i++) {
+            b.low[i] = k == 0 || at[i] < b.low[i] ? at[i] : b.low[i];
+            b.high[i] = k == 0 || at[i] > b.high[i] ? at[i] : b.high[i];
+        }
+    }
+    b.strength = vplRgbMean(radiance) * vplGeometry_TriangleArea(g, triangle);
+    return b;
+}
+
+static Bound boundEmitter(const vplEmitterDef* e)
+{
+    Bound b = {.low = {e->position.x, e->position.y, e->position.z},
+               .high = {e->position.x, e->position.y, e->position.z},
+               .axis = {0, 0, 1},
+               .cosSpread = -1,
+               .strength = vplRgbMean(e->intensity)};
+    if (e->type == VPL_EMITTER_SPOT) { // full strength up to the inner angle, none from the outer one on
+        double sinReach;
+        b.axis = e->direction;
+        vplSinCos(e->innerAngle, &b.sinSpread, &b.cosSpread);
+        vplSinCos(e->outerAngle - e->innerAngle, &sinReach, &b.cosReach);
+    }
+    return b;
+}
+
+static bool hasPlace(const vplEmission* e, int source)
+{
+    const vplEmissionSource* s = &e->sources[source];
+    return s->triangle >= 0 || (s->emitter >= 0 && e->emitters[s->emitter].type != VPL_EMITTER_DIRECTIONAL);
+}
+
+static Bound boundSource(const vplEmission* e, int source)
+{
+    const vplEmissionSource* s = &e->sources[source];
+    return s->triangle >= 0 ? boundTriangle(e->geometry, s->triangle)
+                            : boundEmitter(&e->emitters[s->emitter]);
+}
+
+// ---- building
+
+typedef struct Build {
+    vplEmitterTree* tree;
+    Bound* bounds; // by source - first
+    double turn;   // metres per unit of an axis
+} Build;
+
+static const Bound* boundAt(const Build* b, int position)
+{
+    return &b->bounds[b->tree->sources[position] - b->tree->first];
+}
+
+static double columnOf(const Bound* b, int column)
+{
+    const float* axis = &b->axis.x;
+    return column < 3 ? b->low[column] + 0.5 * (b->high[column] - b->low[column]) : (double)axis[column - 3];
+}
+
+// Widens the node's cone by a source's. The cosine of the sum of two angles, of which neither is more than half a turn.
+static void widenCone(Bound* node, const Bound* source)
+{
+    const double cosine = vplDot(node->axis, source->axis);
+    const double c = cosine < 1 ? (cosine > -1 ? cosine : -1) : 1, s = sqrt(1 - c * c);
+    const bool over = source->sinSpread * c + source->cosSpread * s < 0 || source->cosSpread <= -1;
+    const double sum = over ? -1 : c * source->cosSpread - s * source->sinSpread;
+    node->cosSpread = sum < node->cosSpread ? sum : node->cosSpread;
+    node->cosReach = source->cosReach < node->cosReach ? source->cosReach : node->cosReach;
+}
+
+static Bound boundRange(const Build* build, int first, int count)
+{
+    if (count == 1) {
+        return *boundAt(build, first);
+    }
+    Bound all = *boundAt(build, first);
+    double sum[3] = {0, 0, 0}, strength = 0;
+    for (int i = 0; i < count; i++) {
+        const Bound* b = boundAt(build, first + i);
+        for (int k = 0; k < 3; k++) {
+            all.low[k] = b->low[k] < all.low[k] ? b->low[k] : all.low[k];
+            all.high[k] = b->high[k] > all.high[k] ? b->high[k] : all.high[k];
+            sum[k] += columnOf(b, 3 + k);
+        }
+        strength += b->strength;
+    }
+    all.strength = strength;
+    all.axis = vplNormalize(vplVec((float)sum[0], (float)sum[1], (float)sum[2]));
+    all.cosSpread = vplDot(all.axis, all.axis) > 0 ? 1 : -1;
+    for (int i = 0; i < count; i++) {
+        widenCone(&all, boundAt(build, first + i));
+    }
+    all.cosSpread = all.cosSpread < -1 + 2 * MARGIN ? -1 : all.cosSpread - MARGIN;
+    all.sinSpread = sqrt(1 - all.cosSpread * all.cosSpread);
+    return all;
+}
+
+// The sphere's radius is rounded up, because its centre is rounded; that of one point stays 0.
+static void fillNode(Node* node, const Bound* b)
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        node->centre[k] = (float)(b->low[k] + 0.5 * (b->high[k] - b->low[k]));
+        const double below = (double)node->centre[k] - b->low[k],
+                     above = b->high[k] - (double)node->centre[k];
+        const double farther = below > above ? below : above;
+        square += farther * farther;
+    }
+    node->radius = (float)(sqrt(square) * (1 + MARGIN));
+    node->axis[0] = b->axis.x;
+    node->axis[1] = b->axis.y;
+    node->axis[2] = b->axis.z;
+    node->cosSpread = (float)b->cosSpread;
+    node->sinSpread = (float)b->sinSpread;
+    node->cosReach = (float)b->cosReach;
+    node->strength = b->strength;
+}
+
+// Puts the sources below the middle of the longest column first and returns how many they are.
+static int partition(const Build* b, int first, int count)
+{
+    double low[6], high[6], length = -1;
+    int longest = 0;
+    for (int k = 0; k < 6; k++) {
+        low[k] = high[k] = columnOf(boundAt(b, first), k);
+        for (int i = 1; i < count; i++) {
+            const double v = columnOf(boundAt(b, first + i), k);
+            low[k] = v < low[k] ? v : low[k];
+            high[k] = v > high[k] ? v : high[k];
+        }
+        const double extent = (high[k] - low[k]) * (k < 3 ? 1 : b->turn);
+        longest = extent > length ? k : longest;
+        length = extent > length ? extent : length;
+    }
+    const double at = low[longest] + 0.5 * (high[longest] - low[longest]);
+    int* sources = b->tree->sources + first;
+    int below = 0;
+    for (int i = 0; i < count; i++) {
+        if (columnOf(&b->bounds[sources[i] - b->tree->first], longest) < at) {
+            const int kept = sources[below];
+            sources[below++] = sources[i];
+            sources[i] = kept;
+        }
+    }
+    return below;
+}
+
+// Recurses at most MAX_HALVINGS + 31 calls deep.
+static void build(const Build* b, int node, int first, int count, int depth)
+{
+    const Bound bound = boundRange(b, first, count);
+    Node* n = &b->tree->nodes[node];
+    fillNode(n, &bound);
+    n->left = 0;
+    if (count == 1) {
+        b->tree->positions[b->tree->sources[first] - b->tree->first] = first;
+        return;
+    }
+    n->left = depth < MAX_HALVINGS ? partition(b, first, count) : 0;
+    n->left = n->left == 0 || n->left == count ? count / 2 : n->left;
+    build(b, node + 1, first, n->left, depth + 1);
+    build(b, node + 2 * n->left, first + n->left, count - n->left, depth + 1);
+}
+
+static double diagonalOf(const Build* b)
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = 0; i < b->tree->count; i++) {
+            const Bound* bound = boundAt(b, i);
+            low = bound->low[k] < low ? bound->low[k] : low;
+            high = bound->high[k] > high ? bound->high[k] : high;
+        }
+        square += (high - low) * (high - low);
+    }
+    return sqrt(square);
+}
+
+static vplResult fill(vplEmitterTree* t)
+{
+    const size_t count = (size_t)t->count, range = (size_t)(t->end - t->first);
+    t->nodes = vplArena_Alloc(t->arena, 2 * count - 1, sizeof *t->nodes);
+    t->sources = vplArena_Alloc(t->arena, count, sizeof *t->sources);
+    t->positions = vplArena_Alloc(t->arena, range, sizeof *t->positions);
+    Bound* bounds = vplArena_Alloc(t->arena, range, sizeof *bounds);
+    TRY(vplArena_Check(t->arena));
+    for (int i = t->first, at = 0; i < t->end; i++) {
+        if (hasPlace(t->emission, i)) {
+            bounds[i - t->first] = boundSource(t->emission, i);
+            t->sources[at++] = i;
+        }
+    }
+    Build b = {t, bounds, 0};
+    b.turn = TURN * diagonalOf(&b);
+    build(&b, 0, 0, t->count, 0);
+    vplArena_Free(t->arena, bounds);
+    return VPL_SUCCESS;
+}
+
+vplResult vplEmitterTree_Create(const vplEmission* emission, int first, int end, vplEmitterTree** treeOut)
+{
+    int count = 0;
+    for (int i = first; i < end; i++) {
+        count += hasPlace(emission, i);
+    }
+    if (count == 0) {
+        *treeOut = NULL;
+        return VPL_SUCCESS;
+    }
+    vplArena* arena = vplArena_Create(emission->context);
+    vplEmitterTree* t = vplArena_AllocZero(arena, 1, sizeof *t);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *t = (vplEmitterTree){
+            .emission = emission, .first = first, .end = end, .count = count, .arena = arena};
+        result = fill(t);
+    }
+    return vplArena_Deliver(arena, result, t, treeOut);
+}
+
+void vplEmitterTree_Destroy(vplEmitterTree* tree)
+{
+    vplArena_Destroy(tree != NULL ? tree->arena : NULL);
+}
+
+// ---- choosing
+
+// Cosine and sine of max(a - b, 0), of two angles up to half a turn.
+typedef struct Angle {
+    double cosine, sine;
+} Angle;
+
+static inline Angle subtract(Angle a, double cosine, double sine)
+{
+    return a.cosine > cosine ? (Angle){1, 0}
+                             : (Angle){a.cosine * cosine + a.sine * sine, a.sine * cosine - a.cosine * sine};
+}
+
+static inline Angle angleOf(double cosine)
+{
+    const double square = 1 - cosine * cosine;
+    return (Angle){cosine, square > 0 ? sqrt(square) : 0};
+}
+
+// A mean of two cosines of an angle: the largest in a node, which keeps its sources, and that of its centre, which tells
+// halves apart. Variance is 0.3 to 0.7 of that with the largest alone (halls with 100 and 1,000 lamps).
+static inline double blend(double largest, double middle)
+{
+    return 0.125 * largest + 0.875 * (middle > 0 ? middle : 0);
+}
+
+// About the strength that reaches the point, over the squared distance; 0 only where no source of the node lights it.
+// Inside of the sphere nothing is known of directions.
+static double importance(const Node* node, vplVec3 p, vplVec3 n)
+{
+    const double x = (double)node->centre[0] - p.x, y = (double)node->centre[1] - p.y,
+                 z = (double)node->centre[2] - p.z;
+    const double d2 = x * x + y * y + z * z, r2 = (double)node->radius * node->radius;
+    if (d2 <= r2) {
+        return r2 > 0 ? node->strength / r2 : 0;
+    }
+    const double inverse = 1 / sqrt(d2), sinBox = node->radius * inverse;
+    const double cosBox = sqrt(1 - sinBox * sinBox), facing = (n.x * x + n.y * y + n.z * z) * inverse;
+    const double received = subtract(angleOf(facing), cosBox, sinBox).cosine + MARGIN;
+    if (received <= 0) {
+        return 0;
+    }
+    double sent = 1;
+    if (node->cosSpread > -1) {
+        const double off = -(node->axis[0] * x + node->axis[1] * y + node->axis[2] * z) * inverse;
+        const Angle beyond = subtract(angleOf(off), (double)node->cosSpread, (double)node->sinSpread);
+        const double least = subtract(beyond, cosBox, sinBox).cosine;
+        if (least <= (double)node->cosReach - MARGIN) {
+            return 0;
+        }
+        sent = blend(least > 0 ? least + MARGIN : MARGIN,
+                     beyond.cosine > (double)node->cosReach ? beyond.cosine : 0);
+    }
+    return node->strength * blend(received, facing) * sent / d2;
+}
+
+// The share of the left half; negative where neither half lights the point.
+static double leftShare(const vplEmitterTree* t, int node, vplVec3 position, vplVec3 normal)
+{
+    const double left = importance(&t->nodes[node + 1], position, normal),
+                 right = importance(&t->nodes[node + 2 * t->nodes[node].left], position, normal);
+    return left + right > 0 ? left / (left + right) : -1;
+}
+
+vplChosenSource vplEmitterTree_Choose(const vplEmitterTree* t, vplVec3 position, vplVec3 normal,
+                                      double choice)
+{
+    vplChosenSource chosen = {-1, 1, choice};
+    int node = 0, first = 0;
+    while (t->nodes[node].left > 0) {
+        const int left = t->nodes[node].left;
+        const double share = leftShare(t, node, position, normal);
+        if (share < 0) {
+            return chosen;
+        }
+        const bool goesLeft = chosen.rest < share;
+        chosen.rest = goesLeft ? chosen.rest / share : (chosen.rest - share) / (1 - share);
+        chosen.rest = chosen.rest < 1 ? chosen.rest : 1 - DBL_EPSILON;
+        chosen.probability *= goesLeft ? share : 1 - share;
+        first += goesLeft ? 0 : left;
+        node += goesLeft ? 1 : 2 * left;
+    }
+    chosen.source = t->sources[first];
+    return chosen;
+}
+
+double vplEmitterTree_Probability(const vplEmitterTree* t, vplVec3 position, vplVec3 normal, int source)
+{
+    const int position0 = t->positions[source - t->first];
+    double probability = 1;
+    for (int node = 0, first = 0; t->nodes[node].left > 0 && probability > 0;) {
+        const int left = t->nodes[node].left;
+        const double share = leftShare(t, node, position, normal);
+        const bool goesLeft = position0 < first + left;
+        probability *= share < 0 ? 0 : goesLeft ? share : 1 - share;
+        first += goesLeft ? 0 : left;
+        node += goesLeft ? 1 : 2 * left;
+    }
+    return probability;
+}

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+// Tests of many lamps: the tree from which paths choose emitters, and refusals of pictures that need too much memory.
+#include "failing.h"
+#include "geometry/emitter_tree.h"
+#include "path_scenes.h"
+
+enum { LAMPS = 100, QUADS = 40, POINTS = 60 };
+
+static vplVec3 pointAt(uint64_t index, float size)
+{
+    const double u[3] = {uniformAt(71, 3 * index), uniformAt(71, 3 * index + 1), uniformAt(71, 3 * index + 2)};
+    return vplVec(size * (float)(2 * u[0] - 1), size * (float)(2 * u[1] - 1), size * (float)(2 * u[2] - 1));
+}
+
+// A room with lamps of every kind; a camera in it.
+static vplScene* hall(vplContext* context)
+{
+    vplScene* scene = newScene(context);
+    addRoom(scene, addGrey(scene, 0.5f, 0));
+    for (int i = 0; i < LAMPS; i++) {
+        const bool spot = i % 3 == 0;
+        const vplVec3 aim = pointAt(1000 + (uint64_t)i, 1);
+        addEmitter(scene, i == 50 ? VPL_EMITTER_DIRECTIONAL : spot ? VPL_EMITTER_SPOT : VPL_EMITTER_POINT,
+                   pointAt((uint64_t)i, 0.9f), aim, i == 50 ? 1 : 0.02f * (float)(1 + i % 5));
+    }
+    const int glow = addGrey(scene, 0.2f, 2);
+    for (int i = 0; i < QUADS; i++) {
+        addQuad(scene, glow, pointAt(2000 + (uint64_t)i, 0.8f), i % 2, 0.05f + 0.002f * (float)i);
+    }
+    addCamera(scene, vplVec(0, 0, 0.95f), vplVec(0, -0.1f, -1), 1.4);
+    return scene;
+}
+
+static vplEmission* emissionOf(const vplScene* scene, const vplGeometry* g, vplEmitterDef emitters[LAMPS])
+{
+    vplEmission* e;
+    for (int i = 0; i < LAMPS; i++) {
+        emitters[i] = *vplScene_GetEmitter(scene, i);
+    }
+    assert_int_equal(vplEmission_Create(g, emitters, LAMPS, &e), VPL_SUCCESS);
+    return e;
+}
+
+// Checks the probabilities of all sources for a point against 4,096 evenly spread choices. With those that end without a
+// source they add up to 1.
+static void checkPoint(const vplEmitterTree* tree, const vplEmission* e, int first, int end, vplVec3 p, vplVec3 n)
+{
+    enum { CHOICES = 4096 };
+    static int counts[LAMPS + 2 * QUADS + 8];
+    double sum = 0;
+    int without = 0;
+    memset(counts, 0, sizeof counts);
+    for (int i = 0; i < CHOICES; i++) {
+        const vplChosenSource c = vplEmitterTree_Choose(tree, p, n, (i + 0.5) / CHOICES);
+        if (c.source >= 0) {
+            counts[c.source]++;
+            assertNear(c.probability, vplEmitterTree_Probability(tree, p, n, c.source), 1e-12, "chosen", c.source);
+            assert_true(c.rest >= 0 && c.rest < 1);
+        }
+        without += c.source < 0;
+    }
+    for (int i = first; i < end; i++) {
+        const vplEmissionSource* s = &e->sources[i];
+        if (s->triangle >= 0 || e->emitters[s->emitter].type != VPL_EMITTER_DIRECTIONAL) {
+            const double probability = vplEmitterTree_Probability(tree, p, n, i);
+            sum += probability;
+            assertNear(counts[i], probability * CHOICES, 1.01, "count", i); // an interval of this length
+        }
+    }
+    assert_true(sum <= 1 + 1e-9);
+    assertNear(sum + (double)without / CHOICES, 1, 0.02, "sum", 0); // intervals without a source are few
+}
+
+TEST(ProbabilitiesOfATreeOfEmittersAreThoseOfItsChoices, 1)
+{
+    vplScene* scene = hall(context);
+    vplEmitterDef emitters[LAMPS];
+    vplGeometry* g;
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    vplEmission* e = emissionOf(scene, g, emitters);
+    const int ends[3] = {0, e->firstTriangle, e->sourceCount};
+    assert_int_equal(ends[2] - ends[1], 2 * QUADS);
+    for (int k = 0; k < 2; k++) {
+        vplEmitterTree* tree;
+        assert_int_equal(vplEmitterTree_Create(e, ends[k], ends[k + 1], &tree), VPL_SUCCESS);
+        for (uint64_t i = 0; i < POINTS; i++) {
+            checkPoint(tree, e, ends[k], ends[k + 1], pointAt(3000 + i, 1), vplNormalize(pointAt(4000 + i, 1)));
+        }
+        vplEmitterTree_Destroy(tree);
+    }
+    vplEmission_Destroy(e);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+}
+
+// Every emitter that lights a point unoccluded can be chosen there.
+TEST(NoEmitterThatLightsAPointIsLeftOut, 1)
+{
+    vplScene* scene = hall(context);
+    vplEmitterDef emitters[LAMPS];
+    vplGeometry* g;
+    vplEmitterTree* tree;
+    int lit = 0;
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    vplEmission* e = emissionOf(scene, g, emitters);
+    assert_int_equal(vplEmitterTree_Create(e, 0, e->firstTriangle, &tree), VPL_SUCCESS);
+    for (uint64_t i = 0; i < 1000; i++) {
+        const vplVec3 p = pointAt(5000 + i, 1), n = vplNormalize(pointAt(7000 + i, 1));
+        for (int k = 0; k < e->firstTriangle; k++) {
+            const vplEmitterDef* emitter = &emitters[e->sources[k].emitter];
+            const vplVec3 to = vplSub(emitter->position, p);
+            const vplRgb light = vplEmitter_Intensity(emitter, vplNegate(vplNormalize(to)));
+            if (emitter->type != VPL_EMITTER_DIRECTIONAL && vplDot(n, to) > 1e-4f && light.r > 0) {
+                assert_true(vplEmitterTree_Probability(tree, p, n, k) > 0);
+                lit++;
+            }
+        }
+    }
+    printf("# %d pairs of a point and an emitter that lights it\n", lit);
+    assert_true(lit > 20000);
+    vplEmitterTree_Destroy(tree);
+    vplEmission_Destroy(e);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+}
+
+// The mean of a picture of `size` pixels a side, with trees or without.
+static double meanOf(const vplGeometry* g, vplPathDef def, int samples, bool trees, double* errorOut)
+{
+    vplPathTracer* tracer;
+    vplPathStats stats;
+    vplImage* image;
+    def.emittersOfTree = def.trianglesOfTree = trees ? 1 : INT32_MAX;
+    assert_int_equal(vplPathTracer_Create(g, &def, &tracer), VPL_SUCCESS);
+    assert_int_equal(vplPathTracer_Pass(tracer, samples, NULL, NULL, 0, 1), VPL_SUCCESS);
+    assert_int_equal(vplImage_Create(g->context, def.width, def.height, &image), VPL_SUCCESS);
+    vplPathTracer_Resolve(tracer, image, &stats);
+    const double mean = meanOfImage(image, 0);
+    *errorOut = stats.errorEstimate / sqrt((double)def.width * def.height);
+    vplImage_Destroy(image);
+    vplPathTracer_Destroy(tracer);
+    return mean;
+}
+
+// Light of all lamps, reflected up to twice, has the same mean whether vertices choose lamps from trees or ask all.
+TEST(TreesOfEmittersChangeNoMean, 2)
+{
+    static const int ways[] = {VPL_PATH_LIGHT_SAMPLING, VPL_PATH_LIGHT_SAMPLING | VPL_PATH_BSDF_SAMPLING,
+                               VPL_PATH_ALL};
+    vplScene* scene = hall(context);
+    vplGeometry* g;
+    vplEmitterDef emitters[LAMPS];
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    for (int i = 0; i < LAMPS; i++) {
+        emitters[i] = *vplScene_GetEmitter(scene, i);
+    }
+    vplPathDef def = vplDefaultPathDef();
+    def.camera = vplScene_GetCamera(scene, 0);
+    def.emitters = emitters;
+    def.emitterCount = LAMPS;
+    def.width = def.height = 16;
+    def.emission = false;
+    def.lastBounce = 2;
+    for (int i = 0; i < 3; i++) {
+        double errors[2];
+        def.techniques = ways[i];
+        const double with = meanOf(g, def, 256, true, &errors[0]);
+        const double without = meanOf(g, def, 256, false, &errors[1]);
+        const double error = sqrt(errors[0] * errors[0] + errors[1] * errors[1]);
+        printf("# techniques %d: with trees %.5f, without %.5f, standard error %.5f\n", ways[i], with, without,
+               error);
+        assertNear(with, without, 4 * error, "mean", i);
+        assert_true(error < 0.01 * without);
+    }
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+}
+
+static uint64_t hashOfHall(vplContext* context)
+{
+    vplScene* scene = hall(context);
+    vplRenderOptions o = pathOptions(16, 4);
+    vplImage* image = renderScene(scene, &o, NULL);
+    const uint64_t hash = vplImage_Hash(image);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    return hash;
+}
+
+TEST_ALONE(PathsAmongLampsAreTheSameEverywhere)
+{
+    assertSameEverywhere(hashOfHall);
+}
+
+static vplResult traceHall(Attempt* a)
+{
+    vplRenderOptions o = pathOptions(8, 1);
+    TRY(vplScene_Create(a->context, &a->scene));
+    for (int i = 0; i < LAMPS; i++) {
+        vplEmitterDef emitter = vplDefaultEmitterDef();
+        emitter.position = pointAt((uint64_t)i, 1);
+        TRY(vplScene_AddEmitter(a->scene, &emitter, NULL));
+    }
+    vplCameraDef camera = vplDefaultCameraDef();
+    vplObjectDef object = vplDefaultObjectDef();
+    vplMaterialDef material = vplDefaultMaterialDef();
+    TRY(vplScene_AddCamera(a->scene, &camera, NULL));
+    TRY(vplScene_AddMaterial(a->scene, &material, &object.material));
+    TRY(vplScene_AddObject(a->scene, &object, NULL));
+    return vplRender(a->scene, &o, &a->image, NULL);
+}
+
+TEST_ALONE(TreesOfEmittersSurviveEveryFailedAllocation)
+{
+    failSomeAllocations("paths among lamps", traceHall, 1);
+}
+
+// ---- memory
+
+TEST(PicturesThatNeedMoreMemoryThanAllowedAreRefused, 1)
+{
+    vplScene* scene = openScene(context, ROOM);
+    vplRenderOptions o = vplDefaultRenderOptions();
+    vplImage* image = NULL;
+    o.method = VPL_METHOD_DIRECT;
+    vplContext_SetMemoryLimit(context, 1 << 20);
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_OUT_OF_MEMORY);
+    assert_non_null(strstr(takeMessage(), "1 MiB are allowed"));
+    assert_null(image);
+    vplContext_SetMemoryLimit(context, 0);
+    o.output.width = o.output.height = 16;
+    vplImage_Destroy(renderScene(scene, &o, NULL));
+    vplScene_Destroy(scene);
+}
+
+// A thousand point lights had 24 GB of shadow maps. Rays replace maps where all together would take more than 1 GiB.
+TEST(ShadowMapsOfManyLampsAreReplacedByRays, 1)
+{
+    vplScene* scene = newScene(context);
+    addRoom(scene, addGrey(scene, 0.5f, 0));
+    addCamera(scene, vplVec(0, 0, 0.9f), vplVec(0, 0, -1), 1.4);
+    for (int i = 0; i < 1000; i++) {
+        addEmitter(scene, VPL_EMITTER_POINT, pointAt((uint64_t)i, 0.9f), vplVec(0, -1, 0), 0.01f);
+    }
+    static const vplMethod methods[] = {VPL_METHOD_DIRECT, VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_KELLER,
+                                        VPL_METHOD_SSVP};
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        vplPlan* plan;
+        o.method = methods[i];
+        o.output.width = o.output.height = 32;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        printf("# method %d: %.0f MiB\n", methods[i], (double)plan->peakBytes / 1048576);
+        assert_true(plan->emitterRays && plan->peakBytes < (int64_t)2 << 30);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
