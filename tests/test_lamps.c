@@ -8,7 +8,8 @@ enum { LAMPS = 100, QUADS = 40, POINTS = 60 };
 
 static vplVec3 pointAt(uint64_t index, float size)
 {
-    const double u[3] = {uniformAt(71, 3 * index), uniformAt(71, 3 * index + 1), uniformAt(71, 3 * index + 2)};
+    const double u[3] = {uniformAt(71, 3 * index), uniformAt(71, 3 * index + 1),
+                         uniformAt(71, 3 * index + 2)};
     return vplVec(size * (float)(2 * u[0] - 1), size * (float)(2 * u[1] - 1), size * (float)(2 * u[2] - 1));
 }
 
@@ -20,7 +21,10 @@ static vplScene* hall(vplContext* context)
     for (int i = 0; i < LAMPS; i++) {
         const bool spot = i % 3 == 0;
         const vplVec3 aim = pointAt(1000 + (uint64_t)i, 1);
-        addEmitter(scene, i == 50 ? VPL_EMITTER_DIRECTIONAL : spot ? VPL_EMITTER_SPOT : VPL_EMITTER_POINT,
+        addEmitter(scene,
+                   i == 50 ? VPL_EMITTER_DIRECTIONAL
+                   : spot  ? VPL_EMITTER_SPOT
+                           : VPL_EMITTER_POINT,
                    pointAt((uint64_t)i, 0.9f), aim, i == 50 ? 1 : 0.02f * (float)(1 + i % 5));
     }
     const int glow = addGrey(scene, 0.2f, 2);
@@ -43,7 +47,8 @@ static vplEmission* emissionOf(const vplScene* scene, const vplGeometry* g, vplE
 
 // Checks the probabilities of all sources for a point against 4,096 evenly spread choices. With those that end without a
 // source they add up to 1.
-static void checkPoint(const vplEmitterTree* tree, const vplEmission* e, int first, int end, vplVec3 p, vplVec3 n)
+static void checkPoint(const vplEmitterTree* tree, const vplEmission* e, int first, int end, vplVec3 p,
+                       vplVec3 n)
 {
     enum { CHOICES = 4096 };
     static int counts[LAMPS + 2 * QUADS + 8];
@@ -54,7 +59,8 @@ static void checkPoint(const vplEmitterTree* tree, const vplEmission* e, int fir
         const vplChosenSource c = vplEmitterTree_Choose(tree, p, n, (i + 0.5) / CHOICES);
         if (c.source >= 0) {
             counts[c.source]++;
-            assertNear(c.probability, vplEmitterTree_Probability(tree, p, n, c.source), 1e-12, "chosen", c.source);
+            assertNear(c.probability, vplEmitterTree_Probability(tree, p, n, c.source), 1e-12, "chosen",
+                       c.source);
             assert_true(c.rest >= 0 && c.rest < 1);
         }
         without += c.source < 0;
@@ -84,7 +90,8 @@ TEST(ProbabilitiesOfATreeOfEmittersAreThoseOfItsChoices, 1)
         vplEmitterTree* tree;
         assert_int_equal(vplEmitterTree_Create(e, ends[k], ends[k + 1], &tree), VPL_SUCCESS);
         for (uint64_t i = 0; i < POINTS; i++) {
-            checkPoint(tree, e, ends[k], ends[k + 1], pointAt(3000 + i, 1), vplNormalize(pointAt(4000 + i, 1)));
+            checkPoint(tree, e, ends[k], ends[k + 1], pointAt(3000 + i, 1),
+                       vplNormalize(pointAt(4000 + i, 1)));
         }
         vplEmitterTree_Destroy(tree);
     }
@@ -167,8 +174,8 @@ TEST(TreesOfEmittersChangeNoMean, 2)
         const double with = meanOf(g, def, 256, true, &errors[0]);
         const double without = meanOf(g, def, 256, false, &errors[1]);
         const double error = sqrt(errors[0] * errors[0] + errors[1] * errors[1]);
-        printf("# techniques %d: with trees %.5f, without %.5f, standard error %.5f\n", ways[i], with, without,
-               error);
+        printf("# techniques %d: with trees %.5f, without %.5f, standard error %.5f\n", ways[i], with,
+               without, error);
         assertNear(with, without, 4 * error, "mean", i);
         assert_true(error < 0.01 * without);
     }

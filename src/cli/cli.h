@@ -19,7 +19,7 @@ enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
         }                                                                                                    \
     } while (0)
 
-enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8, MAX_FRAMES = 100000 };
+enum { MAX_POSITIONALS = 1024, MAX_THREAD_COUNTS = 8, MAX_FRAMES = 100000 };
 
 typedef struct Arguments Arguments;
 
@@ -32,13 +32,14 @@ enum {
     TRADEOFF = 16,
     COMPARE = 32,
     BENCH = 64,
+    MERGE = 128,
     ON_SCENES = RENDER | BAKE | LIGHTS | INFO | TRADEOFF // they take the options of rendering
 };
 
 typedef struct Command {
     const char* name;
     int bit;
-    int positionals;
+    int positionals; // words that are no options: of merge at most, of others exactly
     int (*run)(const Arguments* arguments);
     const char *usage, *summary, *text; // for the help
     const char* unused; // render options without effect here, with spaces around each; or NULL
@@ -77,6 +78,7 @@ struct Arguments {
     double exposure;                 // stops, or VPL_EXPOSURE_AUTO
     int tonemap;                     // 0: as usual with what is shown; else 1 + a vplToneMap
     int frames[2];                   // first and last; [1] < 0: one picture without a number
+    int tile[2];                     // --tile: part, from 1 on, and parts; 0: the whole picture
     int region[4];                   // x, y, width, height; width 0: all of the picture
     int regions[2];                  // columns and rows; 0: none
     int threads[MAX_THREAD_COUNTS], threadsCount;
@@ -179,6 +181,13 @@ bool isStdout(const char* path);
 // rendering.
 bool checkOutput(const char* path);
 
+// Writes a picture of light by -o, --exposure and --tonemap; an exit code.
+int writeWholePicture(const Arguments* arguments, vplImage* image);
+
+// vpl render --tile: returns false after complaining of options that are not for parts; renders a part.
+bool checkTile(const Arguments* arguments);
+int renderTile(const Arguments* arguments, const vplScene* scene);
+
 // Writes the file name of frame `number` of frames up to `last`: "-0012" before the extension, at least four
 // digits. last < 0: the name itself. Returns false if it does not fit.
 bool numberName(const char* name, int number, int last, char* out, size_t size);
@@ -189,6 +198,7 @@ bool writeTextFile(const char* path, const char* text);
 int runRender(const Arguments* arguments);
 int runLights(const Arguments* arguments);
 int runCompare(const Arguments* arguments);
+int runMerge(const Arguments* arguments);
 int runInfo(const Arguments* arguments);
 int runBench(const Arguments* arguments);
 int runTradeoff(const Arguments* arguments);

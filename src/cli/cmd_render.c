@@ -135,6 +135,13 @@ static int writePicture(const Arguments* a, vplImage* image, const char* path, v
                           : exitCode(vplImage_Write(image, path, display), false);
 }
 
+int writeWholePicture(const Arguments* a, vplImage* image)
+{
+    vplWriteOptions display = chooseDisplay(a);
+    warnOfDisplay(a);
+    return writePicture(a, image, a->output, &display);
+}
+
 static int writeLayers(const vplLayers* layers, const char* path)
 {
     return exitCode(vplImage_WriteLayers(layers->layers, layers->count, path), false);
@@ -309,6 +316,11 @@ int runRender(const Arguments* a)
     if (a->output == NULL) {
         complain("render needs -o FILE, the picture to write");
         return EXIT_USAGE;
+    }
+    if (a->tile[1] > 0) {
+        return !checkTile(a)             ? EXIT_USAGE
+               : !checkOutput(a->output) ? EXIT_COULD_NOT
+                                         : runOnScene(a, renderTile);
     }
     if (!vplImage_CanWrite(a->output)) {
         complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());

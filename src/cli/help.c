@@ -44,6 +44,12 @@ const Command COMMANDS[] = {
      "values clamped to [0, 1]; psnr and ssim sRGB-encoded), energy_ratio (sum of A / sum of B) and "
      "max_difference with its pixel. --regions adds a table of blocks.",
      NULL},
+    {"merge", MERGE, MAX_POSITIONALS, runMerge, "vpl merge PART... -o FILE [options]",
+     "puts the parts of a picture together",
+     "Reads parts that vpl render --tile I/N wrote, in any order, and writes the picture, with the bits of "
+     "one render. All "
+     "parts must be there, and of one scene with the same options; they need not come from the same machine.",
+     NULL},
     {"info", INFO, 1, runInfo, "vpl info SCENE [options]",
      "says what is in a scene, and what rendering it requires",
      "Prints counts, bounds, mean reflectance, and the plan of a render with the same options: decisions, "
@@ -151,7 +157,7 @@ static void describeOption(const Option* o, bool commands, char text[TEXT])
         appendWords(text, " [--pipeline ", vplFindOption("pipeline")->value, users >> 8, "]");
     }
     if (commands && o->render == NULL && o->commands != ~0) {
-        appendWords(text, " (", "render|bake|lights|info|tradeoff|compare|bench", o->commands, ")");
+        appendWords(text, " (", "render|bake|lights|info|tradeoff|compare|bench|merge", o->commands, ")");
     }
 }
 

@@ -171,9 +171,12 @@ static int runCommand(const Command* command, int count, const char* const* word
         printHelp(command->name, NULL);
         return finishOutput(EXIT_DONE);
     }
-    if (arguments.positionalCount < command->positionals) {
+    if (arguments.positionalCount < (command->bit == MERGE ? 1 : command->positionals)) {
         complain("%s needs %s; vpl help %s", command->name,
-                 command->positionals == 2 ? "two pictures" : "a scene file", command->name);
+                 command->bit == MERGE     ? "parts of a picture"
+                 : command->bit == COMPARE ? "two pictures"
+                                           : "a scene file",
+                 command->name);
         return EXIT_USAGE;
     }
     return finishOutput(command->run(&arguments));

@@ -148,6 +148,13 @@ static bool readFrames(const Option* o, const char* value, Arguments* a)
     return (f[0] <= f[1] && f[1] - f[0] < MAX_FRAMES) || refuse(o, value, "1 to %d frames", MAX_FRAMES);
 }
 
+static bool readTile(const Option* o, const char* value, Arguments* a)
+{
+    enum { MOST = 4096 };
+    return (parseNumbers(value, '/', 1, MOST, a->tile, 2) == 2 && a->tile[0] <= a->tile[1]) ||
+           refuse(o, value, "I/N, two numbers in [1, %d], I at most N", MOST);
+}
+
 // One thread count, or for bench several: 1,2,4.
 static bool readThreads(const Option* o, const char* value, Arguments* a)
 {
@@ -189,10 +196,12 @@ static const Option OWN[] = {
     {"o", "FILE", NULL, RENDER, readText, AT(output), 0, 0,
      "picture to write: .png (8-bit sRGB), .hdr, .pfm or, where built in, .exr (linear radiance); required",
      NULL},
+    {"o", "FILE", NULL, MERGE, readText, AT(output), 0, 0, "picture to write, as of vpl render; required",
+     NULL},
     {"o", "FILE", NULL, BAKE, readText, AT(output), 0, 0, "mesh to write: .ply; required", NULL},
     {"o", "DIR", NULL, TRADEOFF, readText, AT(output), 0, 0,
      "folder for report.html, tradeoff.svg, tradeoff.csv and the reference, made if missing; required", NULL},
-    {"exposure", "EV|auto", "auto", RENDER, readExposure, 0, -64, 64,
+    {"exposure", "EV|auto", "auto", RENDER | MERGE, readExposure, 0, -64, 64,
      "stops, PNG only: pixels times 2^EV. auto: the geometric mean of the luminance becomes middle grey, "
      "without dark surroundings, the darkest 10 % and the brightest 5 %, up to two stops less where "
      "highlights "
@@ -201,7 +210,7 @@ static const Option OWN[] = {
      NULL},
     {"exposure", "EV", NULL, TRADEOFF | BAKE, readNumber, AT(exposure), -64, 64,
      "stops, 8-bit colours only: radiance times 2^EV; default 0, tradeoff: by the reference", NULL},
-    {"tonemap", "usual|none|reinhard|aces|agx", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
+    {"tonemap", "usual|none|reinhard|aces|agx", "usual", RENDER | MERGE, readChoice, AT(tonemap), 0, 0,
      "PNG only: how bright light fits into the screen's range. none: clipped; aces: strong contrast; agx: "
      "bright colours turn pale, shadows keep their value; usual: agx, reinhard for --preset ssvp-2020, and "
      "none for stages that are not light",
@@ -221,6 +230,11 @@ static const Option OWN[] = {
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics are numbered in the same way",
+     NULL},
+    {"tile", "I/N", NULL, RENDER, readTile, 0, 0, 0,
+     "write part I of N parts of the picture as FILE, for vpl merge: some of its passes, or else bands of 64 "
+     "rows (16 of "
+     "path tracing)",
      NULL},
     {"plan", "FILE", NULL, ON_SCENES & ~TRADEOFF, readPlan, AT(planIn), 0, 0,
      "a plan file (see --plan-out), which sets all options of rendering; options beside it change them",
@@ -307,8 +321,8 @@ static const Option OWN[] = {
     {"memory", "MIB", NULL, RENDER | LIGHTS, readInt, AT(memoryMib), 1, INT_MAX,
      "refuse pictures that need more memory than this, MiB; usual: than nine tenths of what the machine has",
      NULL},
-    {"isa", "auto|scalar|sse2|avx2|avx512", "auto", ~(INFO | COMPARE), readChoice, AT(context.isa), 0, 0,
-     "instruction set: the same bits", NULL},
+    {"isa", "auto|scalar|sse2|avx2|avx512", "auto", ~(INFO | COMPARE | MERGE), readChoice, AT(context.isa), 0,
+     0, "instruction set: the same bits", NULL},
     {"quiet", NULL, NULL, ~0, readFlag, AT(quiet), 0, 0, "no progress bar, no warnings", NULL},
     {"v", NULL, NULL, ~0, readFlag, AT(verbose), 0, 0, "say more", NULL},
     {"help", NULL, NULL, ~0, readFlag, AT(help), 0, 0, "print the help of a command", NULL},

@@ -16,11 +16,13 @@ enum { PATH_TILE = 16 }; // rows of a tile of the path tracer
 // ---- the division
 
 // Why a picture is not made of pieces; NULL: it is.
-static const char* findObstacle(const vplPlan* p)
+static const char* findObstacle(const vplRenderer* r)
 {
+    const vplPlan* p = r->plan;
     const vplRenderOptions* o = &p->options;
-    return o->stop.budgetMs > 0 || o->stop.maxError > 0 || vplPathsAreOpen(p) ||
-                   (p->progressive && o->stop.passes <= 0)
+    const vplStopOptions* asked = &r->asked.stop; // a coarse first plan has no budget
+    return asked->budgetMs > 0 || asked->maxError > 0 || asked->quality != VPL_QUALITY_NONE ||
+                   vplPathsAreOpen(p) || (p->progressive && o->stop.passes <= 0)
                ? "a time or an error ends this picture, so its pieces are not known before; a number of them "
                  "has --passes N without --budget, --max-error and --quality, and by --method path --spp N"
            : o->output.aovs != 0 ? "a picture in pieces has no layers: --aov must be none"
@@ -35,7 +37,7 @@ vplResult vplRenderer_Divide(const vplRenderer* r, int bands, vplPieceGrid* grid
 {
     const vplPlan* p = r->plan;
     const vplOutputOptions* o = &p->options.output;
-    const char* obstacle = findObstacle(p);
+    const char* obstacle = findObstacle(r);
     if (obstacle != NULL) {
         return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT, "%s", obstacle);
     }

@@ -32,6 +32,7 @@ failed=0
 . "$folder/frames.sh"
 . "$folder/goals.sh"
 . "$folder/save.sh"
+. "$folder/parts.sh"
 . "$folder/radiosity.sh"
 . "$folder/tradeoff.sh"
 . "$folder/browser.sh"
