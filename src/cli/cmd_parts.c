@@ -31,7 +31,8 @@ static bool append(Bytes* all, const uint8_t* bytes, size_t size)
 // ---- vpl render --tile
 
 // The pieces of the part, of which a render in N parts has about as many as it has passes or bands.
-static vplResult makePieces(const Arguments* a, const vplScene* scene, vplRenderer* renderer, Progress* progress, Bytes* all)
+static vplResult makePieces(const Arguments* a, const vplScene* scene, vplRenderer* renderer,
+                            Progress* progress, Bytes* all)
 {
     vplPieceGrid grid;
     TRY(vplRenderer_Divide(renderer, 1, &grid));
@@ -39,10 +40,11 @@ static vplResult makePieces(const Arguments* a, const vplScene* scene, vplRender
         TRY(vplRenderer_Divide(renderer, a->tile[1], &grid));
     }
     const int64_t count = grid.count;
-    const int first = (int)(count * (a->tile[0] - 1) / a->tile[1]), end = (int)(count * a->tile[0] / a->tile[1]);
+    const int first = (int)(count * (a->tile[0] - 1) / a->tile[1]),
+              end = (int)(count * a->tile[0] / a->tile[1]);
     if (first == end && !a->quiet) {
-        complain("warning: part %d of %d is empty, because the picture has %d piece%s", a->tile[0], a->tile[1],
-                 grid.count, grid.count > 1 ? "s" : "");
+        complain("warning: part %d of %d is empty, because the picture has %d piece%s", a->tile[0],
+                 a->tile[1], grid.count, grid.count > 1 ? "s" : "");
     }
     for (int i = first; i < end; i++) {
         uint8_t* bytes;
@@ -72,8 +74,8 @@ int renderTile(const Arguments* a, const vplScene* scene)
     result = result == VPL_SUCCESS ? makePieces(a, scene, renderer, &progress, &all) : result;
     endProgress(&progress);
     if (result == VPL_SUCCESS) {
-        result = vplWriteFile(vplScene_GetContext(scene), a->output, all.bytes != NULL ? all.bytes : (uint8_t*)"",
-                              all.size);
+        result = vplWriteFile(vplScene_GetContext(scene), a->output,
+                              all.bytes != NULL ? all.bytes : (uint8_t*)"", all.size);
     }
     vplRenderer_Destroy(renderer);
     free(all.bytes);
