@@ -229,12 +229,12 @@ fi
 # The man page names every option of rendering and of the program once, under the heading that the help has.
 options_in_man_page() {
     make -s --no-print-directory BUILD="$build" "$build/vpl.1" || return 1
-    { "$build/vpl" help options; for command in render bake lights compare info tradeoff bench; do
+    { "$build/vpl" help options; for command in render bake lights compare merge info tradeoff bench; do
         "$build/vpl" help $command
     done; } | sed -n 's/^  \(-[a-z0-9-]*\).*/\1/p' | sort -u >"$scratch/options"
     [ "$(wc -l <"$scratch/options")" -gt 90 ] && while read -r option; do
         wanted=1
-        [ "$option" = -o ] && wanted=3 # rows of the table
+        [ "$option" = -o ] && wanted=4 # rows of the table
         [ "$option" = --exposure ] && wanted=2
         [ "$(grep -c -- "^\.BI \"*$(echo "$option" | sed 's/-/\\\\-/g')\( \|$\)" "$build/vpl.1")" -eq $wanted ] ||
             { echo "vpl.1 does not have $option $wanted times"; return 1; }

@@ -112,8 +112,8 @@ static const Bound* boundAt(const Build* b, int position)
 
 static double columnOf(const Bound* b, int column)
 {
-    const float* axis = &b->axis.x;
-    return column < 3 ? b->low[column] + 0.5 * (b->high[column] - b->low[column]) : (double)axis[column - 3];
+    const double axis[3] = {b->axis.x, b->axis.y, b->axis.z};
+    return column < 3 ? b->low[column] + 0.5 * (b->high[column] - b->low[column]) : axis[column - 3];
 }
 
 // Widens the node's cone by a source's. The cosine of the sum of two angles, of which neither is more than half a turn.
