@@ -30,7 +30,7 @@ struct vplContext {
     atomic_bool cancelled;    // the loop of tasks under way
     uint64_t stamps;          // see vplNextStamp
     struct vplSpeeds* speeds; // see vplContext_SetSpeeds; NULL: as usual
-    // What is read instead of files of these paths, while a scene is read from memory.
+    // Files in memory, which are read instead of those on disk while a scene is read from memory.
     const vplMemoryFile* files;
     int fileCount;
 };

@@ -174,7 +174,7 @@ static Connection connect(const vplPathScene* s, const vplPathVertex* vertex, co
     } else {
         const vplGeometry* g = s->geometry;
         vplRgb radiance = g->materials[g->triangleMaterials[light->triangle]].emission;
-        // Of the point, per square metre; and the share of all particles that start at chosen points.
+        // The density of the point, per square metre, and the share of all particles that start on triangles.
         double density = VPL_PI * vplRgbMean(radiance) / s->trianglePower,
                share = s->trianglePower / s->power;
         if (s->triangleTree != NULL) {
@@ -227,7 +227,7 @@ static bool isEmitterVisible(vplPathState* path, const vplPathVertex* v, const v
 
 // ---- light sampling
 
-// A number of 24 bits with those of another behind them: a tree of many sources uses up more than 24.
+// A random number of 48 bits from two of 24: choosing from a tree of many sources uses up more than 24.
 static double refine(float u, float more)
 {
     return (double)u + 0x1p-24 * (double)more;
