@@ -62,7 +62,8 @@ static void choosePipeline(vplPlan* p)
                                : "one G-buffer, then all lights per tile");
         }
     }
-    if (o->pipeline.interleave < 0) {
+    const bool open = p->showsPatches && o->radiosity.gather < 0; // patches decide
+    if (o->pipeline.interleave < 0 && !open) {
         o->pipeline.interleave = p->gathers ? squareOfRays(o->radiosity.gather) : vplUsualSquare(o);
         if (vplPixelsShareLight(p)) {
             vplDecide(p, "interleave",
@@ -245,7 +246,10 @@ static void chooseRadiosity(vplPlan* p)
     }
 }
 
-enum { CUT_OUT_RAYS = 64 }; // from each pixel, where patches are not drawn
+// Rays from each pixel: where patches are not drawn, and where a seventh of them are groups of triangles. At 160x90 and 5,000
+// patches 16 rays bring relmse from 0.89 to 0.19 in Sponza (55 % groups), from 0.0218 to 0.0189 in a furnished flat (21 %), in
+// 0.7 and 1.0 times the time. They leave 0.0019 by themselves: twice what patches leave around a bunny (2 % groups).
+enum { CUT_OUT_RAYS = 64, GROUP_RAYS = 16, GROUP_SHARE = 7 };
 
 // Decides which kinds of light the picture adds up.
 static void choosePicture(const vplScene* scene, vplPlan* p)
@@ -260,7 +264,7 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
     p->showsVirtual = lit && row->lights && (o->output.show != VPL_SHOW_DIRECT || keller);
     p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
     p->hasCutOuts = vplScene_HasCutOuts(scene);
-    if (p->showsPatches && vplShowsLight(o->output.show) && o->radiosity.gather == 0 && p->hasCutOuts) {
+    if (p->showsPatches && vplShowsLight(o->output.show) && o->radiosity.gather <= 0 && p->hasCutOuts) {
         o->radiosity.gather = CUT_OUT_RAYS;
         vplDecide(p, "gather", "patches cannot be seen through holes: pixels gather their light");
     }
@@ -424,6 +428,24 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
     return VPL_SUCCESS;
 }
 
+// Decides whether pixels gather their light, when the patches are known.
+static void chooseGather(vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    if (o->gather >= 0) {
+        return;
+    }
+    const bool grouped = p->showsPatches && vplShowsLight(p->options.output.show) && p->patchGroups > 0 &&
+                         GROUP_SHARE * (int64_t)p->patchGroups >= p->patches;
+    o->gather = grouped ? GROUP_RAYS : 0;
+    p->gathers = grouped;
+    if (grouped) {
+        vplDecide(p, "gather", "%d of %d patches are groups, whose light differs more than a mean tells",
+                  p->patchGroups, p->patches);
+    }
+    choosePipeline(p);
+}
+
 vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
 {
     TRY(chooseClamp(r, p));
@@ -436,6 +458,7 @@ vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
         chooseCuts(p);
         chooseGroups(r, p);
         TRY(chooseLinks(r, p));
+        chooseGather(p);
         chooseRadiosity(p);
     }
     return VPL_SUCCESS;
