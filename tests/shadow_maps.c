@@ -232,8 +232,8 @@ void makeFlatMap(FlatMap* flat, vplContext* context, vplVec3 light, float far, f
     for (int i = 0; i < 6; i++) {
         flat->texels[i] = stored;
     }
-    flat->map =
-        (vplCubeMap){.position = light, .size = 1, .far = far, .texels = flat->texels, .context = context};
+    flat->map = (vplCubeMap){
+        .position = light, .size = 1, .farPlane = far, .texels = flat->texels, .context = context};
 }
 
 vplShadow exactShadow(const vplCubeMap* map, int samples, float offset)

@@ -277,8 +277,8 @@ TEST(DistancesOfAMapAreRightWithNearPlanesOfATenMillionth, 1)
     vplGeometry* g = buildGeometry(scene);
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.size = 256;
-    def.far = 1e7f;
-    def.near = 1;
+    def.farPlane = 1e7f;
+    def.nearPlane = 1;
     vplCubeMap* map;
     assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
     for (int i = 0; i < 3; i++) {

@@ -12,13 +12,13 @@ VPL_HEADER_BEGIN
 #define VPL_MAX_MAGNITUDE 1e15f
 
 typedef struct vplCameraDef {
-    vplVec3 eye;     // metres; default (0, 0, 5)
-    vplVec3 target;  // metres, not the eye; default (0, 0, 0)
-    vplVec3 up;      // any length but 0, not parallel to the view; default (0, 1, 0)
-    double fovY;     // full vertical angle of view, radians, (0, pi); default 40 degrees
-    double near;     // metres, > 0; default 0.1
-    double far;      // metres, > near; default 100
-    uint32_t cookie; // set by vplDefaultCameraDef
+    vplVec3 eye;      // metres; default (0, 0, 5)
+    vplVec3 target;   // metres, not the eye; default (0, 0, 0)
+    vplVec3 up;       // any length but 0, not parallel to the view; default (0, 1, 0)
+    double fovY;      // full vertical angle of view, radians, (0, pi); default 40 degrees
+    double nearPlane; // metres, > 0; default 0.1
+    double farPlane;  // metres, > nearPlane; default 100
+    uint32_t cookie;  // set by vplDefaultCameraDef
 } vplCameraDef;
 
 vplCameraDef vplDefaultCameraDef(void);

@@ -24,7 +24,7 @@ typedef struct vplView {
     vplVec3 eye, right, up, forward; // right-handed, unit
     double scaleX, scaleY;           // 1 / tangent of the half-angle, across and up
     double offsetX, offsetY;         // position of the sample in the pixel, from its centre; in half pictures
-    double near, far;                // metres
+    double nearPlane, farPlane;      // metres
     int width, height;               // pixels
 } vplView;
 

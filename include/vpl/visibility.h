@@ -37,8 +37,9 @@ bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut);
 typedef struct vplCubeMapDef {
     vplVec3 position; // metres
     int size;         // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
-    float near;       // metres, > 0: nearer surfaces cast no shadow; 0 (default): far * 2^-64
-    float far; // metres, > near: unit of the stored distances; 0 (default): distance of the farthest vertex
+    float nearPlane;  // metres, > 0: nearer surfaces cast no shadow; 0 (default): farPlane * 2^-64
+    // Metres, > nearPlane: unit of the stored distances; 0 (default): distance of the farthest vertex.
+    float farPlane;
     uint32_t cookie; // set by vplDefaultCubeMapDef
 } vplCubeMapDef;
 
@@ -48,8 +49,8 @@ vplCubeMapDef vplDefaultCubeMapDef(void);
 typedef struct vplCubeMap {
     vplVec3 position;
     int size;
-    float near, far;
-    float* texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
+    float nearPlane, farPlane;
+    float* texels; // [face][row][column]: radial distance / farPlane, not clamped; +infinity where nothing is
     struct vplCubeBounds* bounds; // NULL before vplCubeMap_FindBounds
     vplRasterStats stats;
     vplContext* context;
@@ -57,7 +58,7 @@ typedef struct vplCubeMap {
 } vplCubeMap;
 
 // Draws every object into the six faces. Source: Franchi and Ferrante, Virtual Point Lights, "Rendering the
-// Cube Shadow Map". Departs: distances are not clamped to far, because that falsely shadows the corners of
+// Cube Shadow Map". Departs: distances are not clamped to farPlane, because that falsely shadows the corners of
 // the cube.
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
                             void* user, vplCubeMap** mapOut);
@@ -86,8 +87,8 @@ typedef enum vplBiasRule {
 
 typedef struct vplShadowDef {
     vplBiasRule biasRule; // default VPL_BIAS_AUTO
-    // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): far * texel half-angle + the disc's radius
-    // at far, and 5.6 b_s, which is free of acne up to 79.9 degrees.
+    // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): farPlane * texel half-angle + the disc's
+    // radius at farPlane, and 5.6 b_s, which is free of acne up to 79.9 degrees.
     float biasStatic, biasDynamic;
     int pcfSamples; // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
     // off: radius of the disc of samples, metres, >= 0. Negative (default): half a texel's diagonal at the

@@ -12,6 +12,8 @@ static const double DEGREE = VPL_PI / 180;
 static const char* keyOf(const vplJson* object, const char* field)
 {
     static const char* const pairs[][2] = {{"fovY", "fov_y"},
+                                           {"nearPlane", "near"},
+                                           {"farPlane", "far"},
                                            {"innerAngle", "inner_angle"},
                                            {"outerAngle", "outer_angle"},
                                            {"transform", "matrix"},
@@ -61,8 +63,8 @@ static vplResult readCamera(vplSceneLoader* l, const vplJson* camera)
     TRY(vplJson_ReadPosition(camera, "target", &def.target));
     TRY(vplJson_ReadFloats(camera, "up", 3, &def.up));
     TRY(vplJson_ReadAngle(camera, "fov_y", 0, 180, &def.fovY));
-    TRY(vplJson_ReadNumber(camera, "near", &def.near));
-    TRY(vplJson_ReadNumber(camera, "far", &def.far));
+    TRY(vplJson_ReadNumber(camera, "near", &def.nearPlane));
+    TRY(vplJson_ReadNumber(camera, "far", &def.farPlane));
     TRY(vplJson_ReportFault(camera, vplCheckCamera(&def)));
     int index;
     TRY(vplScene_AddCamera(l->scene, &def, &index));

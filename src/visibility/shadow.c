@@ -58,7 +58,8 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
         shadow.def.pcfOffset = shadow.pcfTangent = 0;
     }
     if (shadow.def.biasStatic < 0) {
-        shadow.def.biasStatic = map->far * (shadow.texelTangent + shadow.pcfTangent) + shadow.def.pcfOffset;
+        shadow.def.biasStatic =
+            map->farPlane * (shadow.texelTangent + shadow.pcfTangent) + shadow.def.pcfOffset;
     }
     if (shadow.def.biasDynamic < 0) {
         shadow.def.biasDynamic = 5.6f * shadow.def.biasStatic;
