@@ -6,6 +6,7 @@
 
 #include "base/arena.h"
 #include "base/hash.h"
+#include "lights/kernels.h"
 
 #define SPOT_ANGLE 1.1 // outer angle, radians
 

@@ -4,6 +4,7 @@
 #include "shapes.h"
 
 #include "math/vec.h"
+#include "visibility/blocks.h"
 #include "visibility/cube_bounds.h"
 #include "base/context.h"
 #include "visibility/kernels.h"

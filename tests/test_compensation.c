@@ -5,6 +5,7 @@
 
 #include "math/vec.h"
 #include "shading/compensation.h"
+#include "visibility/blocks.h"
 
 #include <stdlib.h>
 

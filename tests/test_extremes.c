@@ -3,7 +3,9 @@
 // names, and those that no other file has are here.
 #include "shadow_maps.h"
 
+#include "math/matrix.h"
 #include "math/vec.h"
+#include "shading/light_block.h"
 #include "shading/shading.h"
 
 #include <stdlib.h>

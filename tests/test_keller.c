@@ -4,6 +4,7 @@
 #include "shapes.h"
 
 #include "math/vec.h"
+#include "shading/light_block.h"
 
 #include <stdlib.h>
 

@@ -3,6 +3,8 @@
 // written.
 #include "test.h"
 
+#include "math/matrix.h"
+
 #include <stdlib.h>
 #include <unistd.h>
 

@@ -3,6 +3,7 @@
 #include "scenes.h"
 
 #include "math/vec.h"
+#include "shading/light_block.h"
 #include "shading/shading.h"
 
 #include <float.h>

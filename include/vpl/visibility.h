@@ -121,14 +121,6 @@ float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine);
 // light. The samples lie on a disc perpendicular to the light, so that no seams show at the cube's edges.
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal);
 
-// 16 points at once: the positions and unit normals of a block.
-typedef struct vplSurface {
-    float px[VPL_LANES], py[VPL_LANES], pz[VPL_LANES];
-    float nx[VPL_LANES], ny[VPL_LANES], nz[VPL_LANES];
-} vplSurface;
-
-void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES]);
-
 // ---- hemi-octahedral maps: many small shadow maps of virtual lights, which shine to one side of their
 // surface
 
@@ -176,15 +168,15 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
 // NULL is allowed.
 void vplHemiMaps_Destroy(vplHemiMaps* maps);
 
-// The shadow factor of 16 points: 1 where something nearer to the map's position hides it, and where the
-// position lies behind the point's surface; else 0.
+// The shadow factor of a surface point with a unit normal: 1 where something nearer to the map's position hides it, and where
+// the position lies behind the point's surface; else 0.
 // A ray gives the same answer except within a band. The centre of a texel is off a point at distance r, in
 // the direction (x, y, z), by at most the footprint f = sqrt(2) (|x| + |y| + z) / size. Along the point's
 // plane, at the angle T to the light, it is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r,
 // as in VPL_BIAS_EXACT. Blockers nearer to the point than 1.5 f are ignored. So map and ray agree where every
 // blocker is further than 2.5 f + b from the point and blocks either all or none of the rays to the point's
 // plane within f around it.
-void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
+float vplHemiMap_Factor(const vplHemiMap* map, vplVec3 position, vplVec3 normal);
 
 // ---- paraboloid maps: shadow maps of clusters of virtual lights
 
@@ -262,7 +254,7 @@ typedef struct vplParaboloidTexel {
 bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry,
                              vplParaboloidTexel texel, vplHit* hitOut, vplVec3* directionOut);
 
-// The shadow factor in [0, 1] of 16 points: the bilinear weight of those of the four texels around the point
+// The shadow factor in [0, 1] of a surface point with a unit normal: the bilinear weight of those of the four texels around the point
 // that show something nearer to the map's position than the point's own plane. The plane may face either way,
 // because lights beside the map's position may be in front of it. Points in a hemisphere that was not drawn
 // get 1. Texels beyond the rim of a single hemisphere hide nothing.
@@ -272,8 +264,7 @@ bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geo
 // Blockers nearer to the point than f / 2 are ignored. So map and ray agree where every blocker is further
 // than 2.5 f + b from the point and blocks either all or none of the rays to the point's plane within f
 // around it.
-void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
-                                  float factorOut[VPL_LANES]);
+float vplParaboloidMap_Factor(const vplParaboloidMap* map, vplVec3 position, vplVec3 normal);
 
 VPL_HEADER_END
 
