@@ -126,13 +126,10 @@ void factorBlock(const ShadowMap* m, const vplSurface* s, float factorOut[VPL_LA
 
 float factorAt(const ShadowMap* m, vplVec3 p, vplVec3 n)
 {
-    vplSurface s;
-    float factor[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        setPoint(&s, l, p, n);
-    }
-    factorBlock(m, &s, factor);
-    return factor[0];
+    return m->cube != NULL          ? vplShadow_Factor(&m->shadow, p, n)
+           : m->hemi != NULL        ? vplHemiMap_Factor(&m->hemi->maps[0], p, n)
+           : m->paraboloids != NULL ? vplParaboloidMap_Factor(&m->paraboloids->maps[0], p, n)
+                                    : vplReflectiveMap_Factor(m->reflective, p, n);
 }
 
 vplVec3 wayToMap(const ShadowMap* m, vplVec3 point)
