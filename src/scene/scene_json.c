@@ -12,8 +12,6 @@ static const double DEGREE = VPL_PI / 180;
 static const char* keyOf(const vplJson* object, const char* field)
 {
     static const char* const pairs[][2] = {{"fovY", "fov_y"},
-                                           {"nearPlane", "near"},
-                                           {"farPlane", "far"},
                                            {"innerAngle", "inner_angle"},
                                            {"outerAngle", "outer_angle"},
                                            {"transform", "matrix"},
@@ -25,7 +23,8 @@ static const char* keyOf(const vplJson* object, const char* field)
             return pairs[i][1];
         }
     }
-    return field;
+    // The file may leave these two out, and the default of one may not fit the other.
+    return strcmp(field, "nearPlane") == 0 ? "near" : strcmp(field, "farPlane") == 0 ? "far" : field;
 }
 
 vplResult vplJson_ReportFault(const vplJson* object, vplFault fault)
