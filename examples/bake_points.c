@@ -2,7 +2,7 @@
 // Light at points that a program has, such as the texels of a lightmap or the probes of a level: bake_points SCENE COUNT
 // spreads points over the scene's surfaces, finds their irradiance by 1,000 particles with shadows by rays, and prints
 // x,y,z,r,g,b (metres, W/m^2) as CSV.
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <math.h>
 #include <stdio.h>

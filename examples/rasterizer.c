@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The rasterizer without scenes or lights: rasterizer [PICTURE] draws a fan of coloured blades in perspective by two shaders.
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <math.h>
 #include <stdio.h>

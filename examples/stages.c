@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Each stage of instant radiosity called by itself: stages SCENE PICTURE simulates particles, draws a cube shadow map, asks
-// it about a point, runs the light kernel and shades a picture. The scene's first light must be a point light.
-#include <vpl/vpl.h>
+// it about a point, lights points by virtual lights and shades a picture. The scene's first light must be a point light.
+#include <vpl/stages.h>
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,22 +69,25 @@ static vplShadeLight* prepareLights(const vplLightSet* set, int* countOut)
     return lights;
 }
 
-// 3. The light kernel lights 16 points at once, here along the front of the floor.
-static void lightFloor(const vplContext* context, const vplShadeLight* lights, int lightCount)
+// 3. The virtual lights light points of the floor, here 16 along its front, which rays find.
+static void lightFloor(const vplGeometry* geometry, const vplShadeLight* lights, int lightCount)
 {
-    vplSurface surface;
-    float irradiance[3][VPL_LANES] = {{0}};
-    for (int l = 0; l < VPL_LANES; l++) {
-        surface.px[l] = -2 + 0.25f * (float)l;
-        surface.py[l] = 0;
-        surface.pz[l] = 2;
-        surface.nx[l] = surface.nz[l] = 0;
-        surface.ny[l] = 1;
+    vplShadeDef def = {.minDistance = 0.2f, .lights = lights, .lightCount = lightCount};
+    vplSurfacePoint points[16];
+    vplRgb irradiance[16];
+    int count = 0;
+    for (int i = 0; i < 16; i++) {
+        const vplRay ray = {.origin = {-2 + 0.25f * (float)i, 0.1f, 2}, .direction = {0, -1, 0}};
+        vplHit hit;
+        if (vplGeometry_ClosestHit(geometry, &ray, &hit)) {
+            points[count++] = (vplSurfacePoint){hit.position, hit.normal, hit.triangle};
+        }
     }
-    vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0.2f}, &surface, lights, lightCount,
-                        irradiance);
-    printf("irradiance along the front of the floor: %g ... %g W/m^2\n", (double)irradiance[0][0],
-           (double)irradiance[0][VPL_LANES - 1]);
+    check(vplShadePoints(geometry, &def, points, count, irradiance, NULL), "points");
+    if (count > 0) {
+        printf("irradiance along the front of the floor: %g ... %g W/m^2\n", (double)irradiance[0].r,
+               (double)irradiance[count - 1].r);
+    }
 }
 
 // 4. The picture: direct light with shadows, then one additive pass per virtual light.
@@ -124,7 +127,7 @@ int main(int count, char** words)
     vplCubeMap* map = castShadow(geometry, light, &shadow);
     int lightCount;
     vplShadeLight* lights = prepareLights(set, &lightCount);
-    lightFloor(context, lights, lightCount);
+    lightFloor(geometry, lights, lightCount);
     vplShadeDef def = {0};
     def.accumulation = VPL_ACCUMULATE_MULTIPASS;
     def.minDistance = 0.2f;

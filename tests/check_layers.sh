@@ -21,7 +21,11 @@ BEGIN {
     allowed["cli"] = "cli public"
     layer["vecmath"] = "math"
     layer["formulas"] = "visibility"
+    layer["machine"] = layer["choices"] = "base"
+    layer["imagetools"] = "image"
+    layer["scenetools"] = "scene"
     layer["options"] = layer["plan"] = layer["pieces"] = "render"
+    layer["stages"] = layer["optiontools"] = layer["plantools"] = layer["rendertools"] = "render"
     inner["radiosity"] = "sides factors links solve mesh draw"
 }
 {

@@ -16,7 +16,7 @@ void lookDown(vplScene* scene, float height, double half)
     camera.target = vplVec(0, 0, 0);
     camera.up = vplVec(0, 0, -1);
     camera.fovY = 2 * atan(half);
-    camera.near = 0.05;
+    camera.nearPlane = 0.05;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
 }
 

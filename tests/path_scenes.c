@@ -102,8 +102,8 @@ void addCamera(vplScene* scene, vplVec3 eye, vplVec3 target, double fovY)
     def.eye = eye;
     def.target = target;
     def.up = eye.x == target.x && eye.z == target.z ? (vplVec3){0, 0, -1} : (vplVec3){0, 1, 0};
-    def.near = 1e-3;
-    def.far = 1e4;
+    def.nearPlane = 1e-3;
+    def.farPlane = 1e4;
     def.fovY = fovY;
     assert_int_equal(vplScene_AddCamera(scene, &def, NULL), VPL_SUCCESS);
 }

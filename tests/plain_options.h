@@ -3,7 +3,7 @@
 #ifndef VPL_TESTS_PLAIN_OPTIONS_H
 #define VPL_TESTS_PLAIN_OPTIONS_H
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 // Ten particles whose lights have no shadows (Franchi and Ferrante, physical lighting), deferred shading, and one
 // sample per pixel: the smallest pictures in which every stage takes part.

@@ -30,6 +30,8 @@ echo '#include "render/render.h"' >"$scratch/tree/src/math/bad.c"
 check LayersIncludeOnlyTheLayersBelow tests/check_layers.sh
 check LayerCheckCatchesAWrongInclude refuses tests/check_layers.sh "$scratch/tree"
 
+# windows.h defines near, far, small and interface as macros.
+windows="-Dnear= -Dfar= -Dsmall=char -Dinterface=struct"
 for header in include/vpl/*.h; do
     name=$(basename "$header" .h)
     echo "#include <vpl/$name.h>" >"$scratch/alone.c"
@@ -37,7 +39,26 @@ for header in include/vpl/*.h; do
     check "Header_${name}_CompilesAsC11" "$cc" -std=c11 -pedantic -Wall -Wextra -Werror -Iinclude -fsyntax-only "$scratch/alone.c"
     check "Header_${name}_CompilesAsC17" "$cc" -std=c17 -pedantic -Wall -Wextra -Werror -Iinclude -fsyntax-only "$scratch/alone.c"
     check "Header_${name}_CompilesAsCpp17" "$cc" -x c++ -std=c++17 -Wall -Wextra -Werror -Iinclude -fsyntax-only "$scratch/alone.cpp"
+    check "Header_${name}_CompilesBesideWindowsMacros" "$cc" -std=c11 -Wall -Wextra -Werror $windows -Iinclude -fsyntax-only "$scratch/alone.c"
 done
+
+# Who renders includes vpl.h and sees no stage; stages.h declares everything.
+declares() { # declares HEADER: the exported functions that a program sees which includes this header alone
+    echo "#include <vpl/$1>" | "$cc" -std=c11 -Iinclude -E -P -x c - | grep -oE '\bvpl[A-Za-z0-9_]+\(' | tr -d '(' |
+        LC_ALL=C sort -u | LC_ALL=C comm -12 - tests/data/symbols.txt
+}
+renders_by_few_functions() {
+    declares vpl.h >"$scratch/few"
+    wc -l <"$scratch/few"
+    # Contexts, scenes, options, pictures, plans, renders and pieces: 83, of which 12 make defs.
+    [ "$(wc -l <"$scratch/few")" -ge 60 ] && [ "$(wc -l <"$scratch/few")" -le 85 ] && grep -qx vplRender "$scratch/few" &&
+        ! grep -E '^vpl(Geometry|Raster|Ray|Shadow|CubeMap|Patch|FormFactor|Simulate)' "$scratch/few"
+}
+stages_declare_all() {
+    declares stages.h | LC_ALL=C diff tests/data/symbols.txt -
+}
+check HeaderVplDeclaresWhatRenderingNeeds renders_by_few_functions
+check HeaderStagesDeclaresEveryFunction stages_declare_all
 
 scene=examples/scenes/closed-room.json
 writes() {
@@ -193,6 +214,7 @@ installs_and_finds() {
     "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags libvpl) "$prefix/lib/libvpl.a" \
         $(pkg-config --libs --static libvpl | sed 's/-lvpl//') -o "$scratch/static" &&
         "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags --libs libvpl) -o "$scratch/shared" &&
+        "$cc" -std=gnu11 examples/stages.c $(pkg-config --cflags --libs libvpl) -o "$scratch/stages" &&
         readelf -d "$scratch/shared" | grep -q 'libvpl\.so\.0\.1\]' &&
         "$scratch/static" $scene "$scratch/static.pfm" && "$scratch/shared" $scene "$scratch/shared.pfm" &&
         cmp "$scratch/static.pfm" "$scratch/shared.pfm" && [ -s "$prefix/share/man/man1/vpl.1" ]

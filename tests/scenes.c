@@ -104,7 +104,7 @@ void aim(vplScene* scene, vplVec3 eye, vplVec3 target)
     camera.eye = eye;
     camera.target = target;
     camera.fovY = 1.2;
-    camera.near = 0.01;
+    camera.nearPlane = 0.01;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/arena.h"
 #include "base/hash.h"
+#include "lights/kernels.h"
 
 #define SPOT_ANGLE 1.1 // outer angle, radians
 
@@ -125,13 +126,10 @@ void factorBlock(const ShadowMap* m, const vplSurface* s, float factorOut[VPL_LA
 
 float factorAt(const ShadowMap* m, vplVec3 p, vplVec3 n)
 {
-    vplSurface s;
-    float factor[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        setPoint(&s, l, p, n);
-    }
-    factorBlock(m, &s, factor);
-    return factor[0];
+    return m->cube != NULL          ? vplShadow_Factor(&m->shadow, p, n)
+           : m->hemi != NULL        ? vplHemiMap_Factor(&m->hemi->maps[0], p, n)
+           : m->paraboloids != NULL ? vplParaboloidMap_Factor(&m->paraboloids->maps[0], p, n)
+                                    : vplReflectiveMap_Factor(m->reflective, p, n);
 }
 
 vplVec3 wayToMap(const ShadowMap* m, vplVec3 point)
@@ -232,8 +230,8 @@ void makeFlatMap(FlatMap* flat, vplContext* context, vplVec3 light, float far, f
     for (int i = 0; i < 6; i++) {
         flat->texels[i] = stored;
     }
-    flat->map =
-        (vplCubeMap){.position = light, .size = 1, .far = far, .texels = flat->texels, .context = context};
+    flat->map = (vplCubeMap){
+        .position = light, .size = 1, .farPlane = far, .texels = flat->texels, .context = context};
 }
 
 vplShadow exactShadow(const vplCubeMap* map, int samples, float offset)

@@ -5,6 +5,8 @@
 
 #include "shapes.h"
 
+#include "visibility/blocks.h"
+
 typedef enum MapKind {
     MAP_CUBE,            // one sample, exact bias
     MAP_SOFT_CUBE,       // 16 samples within the automatic radius

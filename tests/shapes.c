@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shapes.h"
 
+#include "math/matrix.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include "plain_options.h"
 

@@ -4,6 +4,7 @@
 #include "shapes.h"
 
 #include "math/vec.h"
+#include "visibility/blocks.h"
 #include "visibility/cube_bounds.h"
 #include "base/context.h"
 #include "visibility/kernels.h"
@@ -43,7 +44,7 @@ static vplCubeMap* makeRandomMap(vplContext* context, int size, uint64_t seed)
     vplCubeMap* map;
     def.position = (vplVec3){0.25f, 1, -0.5f};
     def.size = size;
-    def.far = FAR;
+    def.farPlane = FAR;
     assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
     for (int face = 0; face < 6; face++) {
         fillFace((float*)map->texels + face * size * size, size, seed + (uint64_t)face, face % 3);
@@ -61,7 +62,7 @@ static void checkRegion(const vplCubeMap* map, int face, int column, int row, in
         for (int i = column; i < column + width && i < size; i++) {
             const float stored = map->texels[(face * size + j) * size + i];
             const double s = (2 * i + 1.0) / size - 1, u = 1 - (2 * j + 1.0) / size;
-            const double z = (double)stored * (double)map->far / sqrt(1 + s * s + u * u);
+            const double z = (double)stored * (double)map->farPlane / sqrt(1 + s * s + u * u);
             const double point[3] = {s * z, u * z, z};
             for (int k = 0; k < 3 && isfinite(stored); k++) {
                 assert_true((double)least[VPL_LEAST_POINT + k] <= point[k]);

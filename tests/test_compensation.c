@@ -5,6 +5,7 @@
 
 #include "math/vec.h"
 #include "shading/compensation.h"
+#include "visibility/blocks.h"
 
 #include <stdlib.h>
 
@@ -128,7 +129,7 @@ static vplScene* furnace(vplContext* context, float rho, vplVec3 eye, vplVec3 ta
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = eye;
     camera.target = target;
-    camera.near = 1e-3;
+    camera.nearPlane = 1e-3;
     camera.fovY = fovY;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     return scene;
@@ -356,7 +357,7 @@ TEST(NearDistanceOfASphereIsThatOfItsChords, 2)
     camera.eye = vplVec(0, 0, 0);
     camera.target = vplVec(0, 0, -1);
     camera.fovY = 1;
-    camera.near = 0.01;
+    camera.nearPlane = 0.01;
     vplView view = vplView_Create(&camera, 100, 100);
     static const double shares[] = {0.1, 0.2, 0.45}; // below, flat triangles do not see themselves
     for (int i = 0; i < 3; i++) {

@@ -256,7 +256,7 @@ TEST(TheCallersViewReplacesTheScenesCamera, 2)
     options.view = NULL;
     vplImage* declared = renderScene(scene, &options, NULL);
     assert_true(vplImage_Hash(declared) == vplImage_Hash(moved));
-    view.near = -1;
+    view.nearPlane = -1;
     options.view = &view;
     vplImage* none;
     assert_int_equal(vplRender(scene, &options, &none, NULL), VPL_INVALID_ARGUMENT);

@@ -190,7 +190,7 @@ static vplScene* overFloor(vplContext* context, const vplMaterialDef* over, floa
     camera.target = vplVec(0, 0, 0);
     camera.up = vplVec(0, 0, -1);
     camera.fovY = 2 * atan(1 / 0.9);
-    camera.near = 0.01;
+    camera.nearPlane = 0.01;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     addQuad(scene, grey(0.01f), vplVec(0, 0, 0), -90, 4, 4); // dark: light does not come through twice
     if (over != NULL) {

@@ -67,8 +67,8 @@ static vplCameraDef insideCamera(Dice* dice)
     camera.eye = rollVec(dice, 0.8f);
     camera.target = vplAdd(camera.eye, rollUnit(dice));
     camera.up = rollUnit(dice);
-    camera.near = 0.05;
-    camera.far = 10;
+    camera.nearPlane = 0.05;
+    camera.farPlane = 10;
     camera.fovY = 1.5;
     return camera;
 }
@@ -226,8 +226,8 @@ static vplCameraDef lookAtOrigin(vplVec3 eye)
     camera.eye = eye;
     camera.target = vplVec(0, 0, 0);
     camera.up = vplVec(0, 1, 0);
-    camera.near = 0.1;
-    camera.far = 20;
+    camera.nearPlane = 0.1;
+    camera.farPlane = 20;
     return camera;
 }
 

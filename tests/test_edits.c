@@ -195,7 +195,7 @@ TEST(WrongChangesAreRefusedAndChangeNothing, 1)
     const vplMat4 singular = {{0}}, identity = vplMat4_Identity();
     assert_int_equal(vplScene_SetCamera(scene, 9, &camera), VPL_INVALID_ARGUMENT);
     assert_string_equal(takeMessage(), "camera 9 does not exist, the scene has 1");
-    camera.near = 0;
+    camera.nearPlane = 0;
     assert_int_equal(vplScene_SetCamera(scene, 0, &camera), VPL_INVALID_ARGUMENT);
     material.name = vplScene_GetMaterial(scene, 1)->name;
     assert_int_equal(vplScene_SetMaterial(scene, 0, &material), VPL_INVALID_ARGUMENT);

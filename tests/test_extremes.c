@@ -3,7 +3,9 @@
 // names, and those that no other file has are here.
 #include "shadow_maps.h"
 
+#include "math/matrix.h"
 #include "math/vec.h"
+#include "shading/light_block.h"
 #include "shading/shading.h"
 
 #include <stdlib.h>
@@ -277,8 +279,8 @@ TEST(DistancesOfAMapAreRightWithNearPlanesOfATenMillionth, 1)
     vplGeometry* g = buildGeometry(scene);
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.size = 256;
-    def.far = 1e7f;
-    def.near = 1;
+    def.farPlane = 1e7f;
+    def.nearPlane = 1;
     vplCubeMap* map;
     assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
     for (int i = 0; i < 3; i++) {

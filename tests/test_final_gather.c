@@ -195,7 +195,7 @@ TEST(CallersSayWhatRaysMeet, 2)
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = vplVec(0, 0, 0.5f);
     camera.target = vplVec(0, 0, -1);
-    camera.near = 0.01;
+    camera.nearPlane = 0.01;
     const vplView view = vplView_Create(&camera, 12, 8);
     const float radiosity = 3;
     vplGatherDef gather = {.rayCount = 4, .meet = meetGrey, .user = &radiosity};

@@ -51,7 +51,8 @@ TEST(PosesAreLinearBetweenKeysAndHeldBeyondThem, 1)
         assertNear(pose.fovY, cases[i].fovY, 2e-5, "fovY", (int)i);
         assert_memory_equal(&pose.target, &declared.target, sizeof pose.target);
         assert_memory_equal(&pose.up, &declared.up, sizeof pose.up);
-        assert_true(pose.eye.y == declared.eye.y && pose.near == declared.near && pose.far == declared.far);
+        assert_true(pose.eye.y == declared.eye.y && pose.nearPlane == declared.nearPlane &&
+                    pose.farPlane == declared.farPlane);
     }
     assert_true(poseCamera(scene, 0).eye.x == 0.1f); // poses at keys are exact
     assert_true(poseCamera(scene, 10).eye.x == 2 && poseCamera(scene, -4).fovY == 0.5);

@@ -264,10 +264,10 @@ TEST_ALONE(CamerasLookAlongTheirNode)
     assertPoint(a->eye, 0, 0, 8);
     assertPoint(a->target, 0, 0, 0);
     assertPoint(a->up, 0, 1, 0);
-    assert_true(a->fovY == 0.5 && a->near == 0.25);
-    assert_true(a->far > 8.1 && a->far < 100); // behind the mesh
-    assert_true(b->target.x < 0.001f && fabsf(b->target.z) < 1e-6f && b->fovY == 1 && b->near == 0.5 &&
-                b->far == 77);
+    assert_true(a->fovY == 0.5 && a->nearPlane == 0.25);
+    assert_true(a->farPlane > 8.1 && a->farPlane < 100); // behind the mesh
+    assert_true(b->target.x < 0.001f && fabsf(b->target.z) < 1e-6f && b->fovY == 1 && b->nearPlane == 0.5 &&
+                b->farPlane == 77);
     // Its own camera: no ground, and a light at the camera.
     assert_int_equal(vplScene_GetObjectCount(scene), 1);
     assert_int_equal(vplScene_GetEmitterCount(scene), 1);

@@ -4,6 +4,7 @@
 #include "shapes.h"
 
 #include "math/vec.h"
+#include "shading/light_block.h"
 
 #include <stdlib.h>
 
@@ -32,7 +33,7 @@ static void addCamera(vplScene* scene)
     camera.eye = vplVec(0.1f, -0.2f, 0.9f);
     camera.target = vplVec(0, -0.3f, -1);
     camera.fovY = 1.2;
-    camera.near = 0.01;
+    camera.nearPlane = 0.01;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
 }
 

@@ -2,6 +2,8 @@
 // Tests of the light tree and of the bounds on its clusters' light.
 #include "tree_lights.h"
 
+#include "shading/light_block.h"
+
 // ---- the tree
 
 static void checkContents(const vplLightTree* tree, vplCluster c)

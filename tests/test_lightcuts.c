@@ -2,6 +2,8 @@
 // Tests of lightcuts: the error of clusters with shadows, and pictures.
 #include "tree_lights.h"
 
+#include "visibility/blocks.h"
+
 // ---- clusters with shadows
 
 // Makes 16 points on triangles of the geometry, on either side.

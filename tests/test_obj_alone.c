@@ -115,7 +115,7 @@ static void assertTight(const vplScene* scene, const Frame* f, double tolerance)
         double p[3], at[3];
         vplToDouble3(mesh->positions[i], p);
         see(f, p, at);
-        assert_true(at[2] > camera->near && at[2] < camera->far);
+        assert_true(at[2] > camera->nearPlane && at[2] < camera->farPlane);
         for (int k = 0; k < 2; k++) {
             const double inner = f->slopes[k] - 2 * MARGIN * fmin(f->slopes[0], f->slopes[1]);
             const double place = at[k] / (inner * at[2]);
@@ -126,7 +126,7 @@ static void assertTight(const vplScene* scene, const Frame* f, double tolerance)
     }
     assert_true((least[0] <= -1 + tolerance && most[0] >= 1 - tolerance) ||
                 (least[1] <= -1 + tolerance && most[1] >= 1 - tolerance));
-    assert_true(camera->far < 100 * camera->near);
+    assert_true(camera->farPlane < 100 * camera->nearPlane);
 }
 
 TEST_ALONE(TheCameraFitsTheVerticesExactly)
@@ -143,7 +143,7 @@ TEST_ALONE(ANeedleThatPointsAtTheCameraIsSeen)
     const Frame f = frameOf(camera, 1);
     double at[3];
     see(&f, (double[3]){42, 38, 90}, at);
-    assert_true(at[2] > 10 && at[2] > camera->near && camera->far < 100 * camera->near);
+    assert_true(at[2] > 10 && at[2] > camera->nearPlane && camera->farPlane < 100 * camera->nearPlane);
     vplScene_Destroy(scene);
     closeDesk(&d);
 }
@@ -194,7 +194,7 @@ static void assertGrounded(const vplScene* scene, const Frame* f, double toleran
         }
         assert_true(way[1] < 0); // no horizon in the picture
         const double depth = (centre[1] - f->eye[1]) / way[1];
-        assert_true(depth > camera->near && depth < camera->far);
+        assert_true(depth > camera->nearPlane && depth < camera->farPlane);
         for (int k = 0; k < 3; k++) {
             p[k] = f->eye[k] + depth * way[k] - centre[k];
         }

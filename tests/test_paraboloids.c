@@ -16,17 +16,6 @@ static vplParaboloidMaps* drawMaps(const vplGeometry* g, int size, const vplPara
     return maps;
 }
 
-static float factorOf(const vplParaboloidMap* map, vplVec3 p, vplVec3 n)
-{
-    vplSurface s;
-    float factor[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        setPoint(&s, l, p, n);
-    }
-    vplParaboloidMap_FactorBlock(map, &s, factor);
-    return factor[0];
-}
-
 static size_t placeOf(const vplParaboloidMap* map, int hemisphere, int i)
 {
     return (size_t)hemisphere * vplParaboloidMap_Texels(map->size) +
@@ -427,7 +416,7 @@ TEST(PlacesInMidAirGiveNumbersAnywhere, 2)
         for (int k = 0; k < 20; k++) {
             vplHit hit;
             const vplHemiMapPlace p = rollPlace(g, &dice, &hit);
-            const float factor = factorOf(map, p.position, p.normal);
+            const float factor = vplParaboloidMap_Factor(map, p.position, p.normal);
             assert_true(factor >= 0 && factor <= 1 + 1e-6f);
         }
         vplParaboloidMaps_Destroy(maps);

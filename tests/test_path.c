@@ -216,8 +216,8 @@ TEST(SphereMatchesTheTable, 2, SLOW)
         addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, (float)number(&t, row, "I"));
         vplCameraDef camera = vplDefaultCameraDef();
         camera.eye = (vplVec3){0.1f * radius, 0.2f * radius, 0.3f * radius};
-        camera.near = 0.01 * (double)radius;
-        camera.far = 3 * (double)radius;
+        camera.nearPlane = 0.01 * (double)radius;
+        camera.farPlane = 3 * (double)radius;
         camera.target = (vplVec3){-radius, 0, 0};
         camera.fovY = 1.5;
         assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);

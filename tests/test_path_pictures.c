@@ -231,8 +231,8 @@ TEST(PixelsAreTheRasterizersPixels, 2)
         assert_int_equal(vplScene_AddObject(scene, &def, NULL), VPL_SUCCESS);
     }
     vplCameraDef camera = vplDefaultCameraDef();
-    camera.near = 3.2; // both planes cut through objects
-    camera.far = 6.5;
+    camera.nearPlane = 3.2; // both planes cut through objects
+    camera.farPlane = 6.5;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     vplRenderOptions options = pathOptions(96, 64);
     options.output.width = 128;

@@ -55,7 +55,7 @@ TEST(ALightsWeightIsWhatTheFloorReflects, 2)
     def = narrowDef();
     const vplVirtualLight below = lightAt(vplVec(3, -4, 0), vplVec(0, 1, 0), 10);
     assert_true(worthOf(floor, &below, &def) == 0);
-    def.camera.far = 3.9; // beyond this far plane the floor is cut away
+    def.camera.farPlane = 3.9; // beyond this far plane the floor is cut away
     assert_true(worthOf(floor, &slant, &def) == 0);
     vplGeometry_Destroy(floor);
 }
@@ -349,7 +349,7 @@ static vplScene* pointInCube(vplContext* context, float intensity, float rho)
     emitter.intensity = (vplRgb){intensity, 0.5f * intensity, 0.25f * intensity};
     camera.eye = vplVec(0.5f, 0, 0.5f);
     camera.target = vplVec(-1, 0.1f, 0);
-    camera.near = 0.01;
+    camera.nearPlane = 0.01;
     assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
     assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);

@@ -344,8 +344,8 @@ static uint64_t sizedHash(vplContext* context, float size, float far, const vplR
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = vplVec(0, 2 * size, 6 * size);
     camera.target = vplVec(0, size, 0);
-    camera.near = 0.125 * (double)size;
-    camera.far = 64 * (double)size;
+    camera.nearPlane = 0.125 * (double)size;
+    camera.farPlane = 64 * (double)size;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -quarter, 0, vplVec(5 * size, 5 * size, size));
     addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 2.5f * size, -2.5f * size), 0, 0,

@@ -51,12 +51,12 @@ static void setFov(Parts* p, double value)
 }
 static void setNear(Parts* p, double value)
 {
-    p->camera.near = value;
-    p->camera.far = fmax(p->camera.far, 1e15);
+    p->camera.nearPlane = value;
+    p->camera.farPlane = fmax(p->camera.farPlane, 1e15);
 }
 static void setFar(Parts* p, double value)
 {
-    p->camera.far = value;
+    p->camera.farPlane = value;
 }
 static void setDiffuse(Parts* p, double value)
 {
@@ -121,8 +121,8 @@ static const Quantity QUANTITIES[] = {
     {"vplCameraDef.target[0]", setTarget, -MOST, MOST, -MORE, MORE},
     {"vplCameraDef.up", setUp, 1e-15, MOST, 0, MORE},
     {"vplCameraDef.fovY", setFov, 1e-9, 3.1415926, 0, 3.1415927},
-    {"vplCameraDef.near", setNear, 1e-15, 1e14, 0, MORE},
-    {"vplCameraDef.far", setFar, 0.10001, 1e15, 0.1, MORE},
+    {"vplCameraDef.nearPlane", setNear, 1e-15, 1e14, 0, MORE},
+    {"vplCameraDef.farPlane", setFar, 0.10001, 1e15, 0.1, MORE},
     {"vplMaterialDef.diffuse[0]", setDiffuse, 0, 1, -1e-30, 1.0000002},
     {"vplMaterialDef.emission[1]", setEmission, 0, MOST, -1e-30, MORE},
     {"vplObjectDef.transform[13]", setPlace, -MOST, MOST, -MORE, MORE},

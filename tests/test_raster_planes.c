@@ -154,8 +154,8 @@ TEST(ASphereLitFromItsCentreHasItsDistanceAndNoShadow, 2, SLOW)
             vplHit hit;
             const vplRay ray = {def.position, directionOf(i, size), {0, 0}};
             assert_true(vplGeometry_ClosestHit(g, &ray, &hit));
-            assertNear((double)(map->texels[i] * map->far), (double)hit.t, 1e-6 * (double)hit.t, "distance",
-                       i);
+            assertNear((double)(map->texels[i] * map->farPlane), (double)hit.t, 1e-6 * (double)hit.t,
+                       "distance", i);
             assertNear((double)vplShadow_Factor(&shadow, hit.position, vplNegate(g->normals[hit.triangle])),
                        0, 0, "shadow", i);
         }

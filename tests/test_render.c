@@ -174,8 +174,8 @@ static vplImage* scaledRoom(vplContext* context, float scale, float intensity, v
     camera.eye.y *= scale;
     camera.eye.z *= scale;
     camera.target.y *= scale;
-    camera.near *= scale;
-    camera.far *= scale;
+    camera.nearPlane *= scale;
+    camera.farPlane *= scale;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     vplRenderOptions o = smallOptions();
     o.lighting = lighting;

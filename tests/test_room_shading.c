@@ -5,6 +5,7 @@
 
 #include "math/vec.h"
 #include "lights/light_set.h"
+#include "shading/light_block.h"
 #include "shading/shading.h"
 
 // Returns the virtual lights of set A of room_particles.csv in the kernel's form.

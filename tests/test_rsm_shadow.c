@@ -3,6 +3,7 @@
 // near edges.
 #include "shadow_maps.h"
 
+#include "lights/kernels.h"
 #include "math/vec.h"
 
 static vplEmitterDef emitterOf(vplEmitterType type, vplVec3 position, vplVec3 direction)

@@ -3,6 +3,8 @@
 // written.
 #include "test.h"
 
+#include "math/matrix.h"
+
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -164,7 +166,7 @@ TEST(TheRoomIsThatOfTheTable, 1)
     assertVector(camera->eye, 0, 2.5, 8.5);
     assertVector(camera->target, 0, 2.5, 0);
     assertNear(camera->fovY, 40 * DEGREE, 1e-15, "fovY", 0);
-    assert_true(camera->near == 0.1 && camera->far == 50);
+    assert_true(camera->nearPlane == 0.1 && camera->farPlane == 50);
     assert_int_equal(vplScene_GetEmitter(room, 0)->type, VPL_EMITTER_POINT);
     assertVector(vplScene_GetEmitter(room, 0)->position, 0, 4.5, 0);
     assertRgb(vplScene_GetEmitter(room, 0)->intensity, 10, 10, 10);
@@ -267,10 +269,11 @@ TEST(CamerasAndLightsOfEveryKind, 1)
     assert_int_equal(vplScene_GetEmitterCount(scene), 3);
     const vplCameraDef *plain = vplScene_GetCamera(scene, 0), *full = vplScene_GetCamera(scene, 1);
     const vplCameraDef defaults = vplDefaultCameraDef();
-    assert_true(plain->fovY == defaults.fovY && plain->near == defaults.near && plain->far == defaults.far);
+    assert_true(plain->fovY == defaults.fovY && plain->nearPlane == defaults.nearPlane &&
+                plain->farPlane == defaults.farPlane);
     assertVector(plain->up, 0, 1, 0);
     assertVector(full->up, 0, 0, 1);
-    assert_true(full->near == 1e-2 && full->far == 1e14);
+    assert_true(full->nearPlane == 1e-2 && full->farPlane == 1e14);
     assertNear(full->fovY, VPL_PI / 2, 1e-15, "fovY", 1);
     const vplEmitterDef *spot = vplScene_GetEmitter(scene, 0), *sun = vplScene_GetEmitter(scene, 2);
     assert_true(spot->type == VPL_EMITTER_SPOT && spot->innerAngle == 0);

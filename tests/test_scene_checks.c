@@ -52,11 +52,11 @@ TEST(CamerasAreChecked, 1)
         {DOUBLE(vplCameraDef, fovY), 0, "vplCameraDef.fovY is 0"},
         {DOUBLE(vplCameraDef, fovY), VPL_PI, "vplCameraDef.fovY is 3.14159"},
         {DOUBLE(vplCameraDef, fovY), (double)NAN, "vplCameraDef.fovY is nan"},
-        {DOUBLE(vplCameraDef, near), 0, "vplCameraDef.near is 0"},
-        {DOUBLE(vplCameraDef, near), -1, "vplCameraDef.near is -1"},
-        {DOUBLE(vplCameraDef, near), (double)NAN, "vplCameraDef.near is nan"},
-        {DOUBLE(vplCameraDef, far), 0.1, "vplCameraDef.far is 0.1"},
-        {DOUBLE(vplCameraDef, far), (double)INFINITY, "vplCameraDef.far is inf"},
+        {DOUBLE(vplCameraDef, nearPlane), 0, "vplCameraDef.nearPlane is 0"},
+        {DOUBLE(vplCameraDef, nearPlane), -1, "vplCameraDef.nearPlane is -1"},
+        {DOUBLE(vplCameraDef, nearPlane), (double)NAN, "vplCameraDef.nearPlane is nan"},
+        {DOUBLE(vplCameraDef, farPlane), 0.1, "vplCameraDef.farPlane is 0.1"},
+        {DOUBLE(vplCameraDef, farPlane), (double)INFINITY, "vplCameraDef.farPlane is inf"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         vplCameraDef def = vplDefaultCameraDef();
@@ -169,7 +169,7 @@ TEST(EmittersAreChecked, 1)
 TEST(DefsThatWereNeverFilledInAreRefused, 1)
 {
     vplScene* scene = emptyScene(context);
-    vplCameraDef camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .fovY = 1, .near = 1, .far = 2};
+    vplCameraDef camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .fovY = 1, .nearPlane = 1, .farPlane = 2};
     vplMaterialDef material = {0};
     vplObjectDef object = {.transform = vplMat4_Identity()};
     vplEmitterDef emitter = {0};

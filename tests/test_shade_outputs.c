@@ -136,8 +136,8 @@ TEST(NearAndFarPlanesDoNotChangeWhatIsSeen, 2)
         vplCameraDef camera = vplDefaultCameraDef();
         camera.eye = vplVec(0, 2.5f, 8.5f);
         camera.target = vplVec(0, 2.5f, 0);
-        camera.near = planes[i][0];
-        camera.far = planes[i][1];
+        camera.nearPlane = planes[i][0];
+        camera.farPlane = planes[i][1];
         const vplView view = vplView_Create(&camera, 128, 128);
         const vplShadeDef def = {.output = VPL_OUTPUT_OBJECT};
         assert_int_equal(vplImage_Create(context, 128, 128, &images[i]), VPL_SUCCESS);

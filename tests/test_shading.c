@@ -3,6 +3,7 @@
 #include "scenes.h"
 
 #include "math/vec.h"
+#include "shading/light_block.h"
 #include "shading/shading.h"
 
 #include <float.h>
@@ -397,7 +398,8 @@ TEST_ALONE(DepthIsReversedAndThatOfTheTable)
         vplCameraDef camera = vplDefaultCameraDef();
         camera.eye = vplVec(0, 0, 0);
         camera.target = vplVec(0, 0, -1);
-        const double n = camera.near = number(&t, row, "near"), f = camera.far = number(&t, row, "far");
+        const double n = camera.nearPlane = number(&t, row, "near"),
+                     f = camera.farPlane = number(&t, row, "far");
         const double z = number(&t, row, "view_z"), printed = number(&t, row, "z_ndc");
         const double wanted = n / (f - n) * (f - z) / z, slope = f / (f - n) * n / (z * z);
         vplView view = vplView_Create(&camera, 8, 8);

@@ -5,6 +5,7 @@
 #include "failing.h"
 #include "path_scenes.h"
 
+#include "scene/scene.h"
 #include "scene/sky.h"
 
 static vplEnvironmentDef constantOf(float r, float g, float b)

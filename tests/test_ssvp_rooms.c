@@ -147,7 +147,7 @@ static vplClusterSplitDef splitDef(void)
     def.view.camera.eye = vplVec(-0.9f, 0.3f, 0.9f);
     def.view.camera.target = vplVec(-0.4f, -0.3f, -0.5f);
     def.view.camera.fovY = 1.2;
-    def.view.camera.near = 0.01;
+    def.view.camera.nearPlane = 0.01;
     def.view.minDistance = 0.1f;
     return def;
 }

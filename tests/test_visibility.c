@@ -80,7 +80,8 @@ TEST(TexelsHoldTheDistanceOfTheWall, 2)
                 double da = (double)vplComponent(d, axis), la = (double)vplComponent(light, axis);
                 distance = da != 0 ? fmin(distance, ((da > 0 ? 1 : -1) - la) / da) : distance;
             }
-            assertNear((double)map->texels[i] * (double)map->far, distance, 1e-6 * distance, "distance", i);
+            assertNear((double)map->texels[i] * (double)map->farPlane, distance, 1e-6 * distance, "distance",
+                       i);
         }
         vplCubeMap_Destroy(map);
     }
@@ -122,7 +123,7 @@ TEST(StoredDistancesAreRadialAndUnclamped, 1)
         vplCubeMapDef def = vplDefaultCubeMapDef();
         def.position = l;
         def.size = 64;
-        def.far = (float)number(&t, row, "far");
+        def.farPlane = (float)number(&t, row, "far");
         vplCubeMap* map;
         assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
         // The texel's own ray deviates by up to half a texel's diagonal, 1.27 degrees: 1 - cos is 2.5e-4.
@@ -217,8 +218,8 @@ TEST(ShadowMapsRefuseBadDefs, 1)
     def.size = VPL_MAX_SHADOW_MAP + 1;
     assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_INVALID_ARGUMENT);
     def.size = 4;
-    def.near = 2;
-    def.far = 1;
+    def.nearPlane = 2;
+    def.farPlane = 1;
     assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_INVALID_ARGUMENT);
     assert_null(map);
     FlatMap flat;
@@ -250,7 +251,8 @@ TEST(RedrawnMapsAreThoseOfNewOnes, 2)
     assert_true(memcmp(moved->texels, fresh->texels, texels * sizeof(float)) != 0);
     assert_int_equal(vplCubeMap_Redraw(moved, room, &def, NULL, NULL), VPL_SUCCESS);
     assert_memory_equal(moved->texels, fresh->texels, texels * sizeof(float));
-    assert_true(moved->far == fresh->far && moved->near == fresh->near && moved->position.x == 0.3f);
+    assert_true(moved->farPlane == fresh->farPlane && moved->nearPlane == fresh->nearPlane &&
+                moved->position.x == 0.3f);
     assert_int_equal(moved->stats.fragments, fresh->stats.fragments);
     assert_null(moved->bounds);
     def.size = 64;

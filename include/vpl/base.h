@@ -94,9 +94,6 @@ typedef enum vplIsa {
     VPL_ISA_COUNT
 } vplIsa;
 
-// "auto", "scalar", "sse2", "avx2" or "avx512".
-const char* vplIsa_GetName(vplIsa isa);
-
 typedef struct vplContextDef {
     vplAllocFcn* alloc;             // NULL (default): malloc, realloc and free
     void* allocUser;                // passed to alloc
@@ -136,18 +133,9 @@ void vplContext_Destroy(vplContext* context);
 // the text, which stays until a call fails again. Texts of more than 4,000 bytes lack their middle.
 const char* vplContext_GetLastMessage(const vplContext* context);
 
-// Bytes held now, and the most held at once since creation or the last reset.
-size_t vplContext_GetBytes(const vplContext* context);
-size_t vplContext_GetPeakBytes(const vplContext* context);
-void vplContext_ResetPeakBytes(vplContext* context);
-
 // Plans of renders that need more memory than this, bytes, are refused with VPL_OUT_OF_MEMORY before they begin; 0
 // (default): none is. Allocations themselves have no limit. No picture's bits depend on it.
 void vplContext_SetMemoryLimit(vplContext* context, size_t bytes);
-
-// The instruction set in use (never VPL_ISA_AUTO) and the number of workers (never 0).
-vplIsa vplContext_GetIsa(const vplContext* context);
-int vplContext_GetWorkerCount(const vplContext* context);
 
 // Sets the function by which calls without a progress argument, such as those that read scenes and pictures, can be
 // cancelled. They call it with a fraction of 0, also while a pipe that they read is silent, and return VPL_CANCELLED when
@@ -161,11 +149,6 @@ typedef struct vplMemoryFile {
     const void* bytes; // read only; need not end in 0
     size_t size;
 } vplMemoryFile;
-
-// Writes a whole file. It writes to a temporary file beside the target, checks it and renames it, so that the
-// target is either unchanged or complete. Devices and pipes are written directly. VPL_FILE_ERROR,
-// VPL_OUT_OF_MEMORY.
-vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size);
 
 // The version of the library, VPL_VERSION_STRING of its headers.
 const char* vplGetVersion(void);

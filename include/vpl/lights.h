@@ -3,42 +3,18 @@
 #ifndef VPL_LIGHTS_H
 #define VPL_LIGHTS_H
 
+#include <vpl/choices.h>
 #include <vpl/visibility.h>
 
 VPL_HEADER_BEGIN
 
 #define VPL_MAX_STEPS (1 << 20)
 
-// The formulas of particles and of shading.
-typedef enum vplLighting {
-    VPL_LIGHTING_PHYSICAL = 0, // radiometry: virtual lights emit flux/pi cos, clamped cos cos / d^2
-    VPL_LIGHTING_DOCUMENTED    // as Franchi and Ferrante print it: no falloff, rho/pi per bounce
-} vplLighting;
-
-typedef enum vplSampler {
-    VPL_SAMPLER_AUTO = 0,  // Halton where particles' starts are lights (Keller), else random
-    VPL_SAMPLER_RANDOM,    // counter-based random numbers
-    VPL_SAMPLER_HALTON,    // radical inverses in the primes
-    VPL_SAMPLER_HAMMERSLEY // i/N and radical inverses
-} vplSampler;
-
-typedef enum vplBounce {
-    VPL_BOUNCE_AUTO = 0, // reflect for documented lighting, diffuse for physical
-    VPL_BOUNCE_REFLECT,  // like a mirror
-    VPL_BOUNCE_DIFFUSE   // cosine-distributed
-} vplBounce;
-
 // The document that defines where paths start, and so which lights step 0 holds.
 typedef enum vplParticleStart {
     VPL_START_FIRST_HIT = 0, // Franchi and Ferrante: all N particles are shot, their first hits are step 0
     VPL_START_EMITTER        // Keller: the N points on emitters where particles start are step 0
 } vplParticleStart;
-
-// The geometry that stops particles.
-typedef enum vplParticleGeometry {
-    VPL_PARTICLE_GEOMETRY_EXACT = 0, // the triangles
-    VPL_PARTICLE_GEOMETRY_OBB        // objects' oriented bounding boxes (Franchi and Ferrante, "Improving")
-} vplParticleGeometry;
 
 // ---- reflective shadow maps
 
@@ -103,12 +79,11 @@ typedef struct vplReflectiveTexel {
 bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                                vplReflectiveTexel* texelOut);
 
-// The shadowed share, [0, 1], of the emitter's light at 16 points: the bilinear weight of those of the four
+// The shadowed share, [0, 1], of the emitter's light at a surface point with a unit normal: the bilinear weight of those of the four
 // nearest texels that show a surface nearer than both the point and its plane, by more than half a texel's
 // side. So no plane shadows itself, and an object within that distance of a surface casts no shadow on it.
 // If all rays within a texel's side agree, the factor agrees with them. 0 outside the map's view.
-void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
-                                  float factorOut[VPL_LANES]);
+float vplReflectiveMap_Factor(const vplReflectiveMap* map, vplVec3 position, vplVec3 normal);
 
 // ---- particles
 
@@ -282,14 +257,6 @@ double vplCountUseful(const vplLightSet* set, const float* use);
 // over all shifts is the light of all. In closed rooms all are kept unchanged. `shift` as in vplRsmSampleDef.
 vplResult vplKeepUseful(const vplLightSet* set, const float* use, uint64_t shift, vplLightSet** setOut);
 
-// Distance of a light from a cluster: w1 |V - C| + w2 times one of these; n: the two unit normals.
-typedef enum vplClusterMetric {
-    VPL_CLUSTER_ONE_MINUS = 0,     // 1 - n.n (the default)
-    VPL_CLUSTER_PRINTED,           // max(n.n, 0), as printed: equal normals are far apart
-    VPL_CLUSTER_ONE_MINUS_CLAMPED, // 1 - max(n.n, 0)
-    VPL_CLUSTER_ANGLE              // the angle, radians (Dong et al. 2009)
-} vplClusterMetric;
-
 typedef struct vplClusterDef {
     int count;               // C, [1, VPL_MAX_LIGHTS]; default 8; no more than there are lights are made
     vplClusterMetric metric; // default VPL_CLUSTER_ONE_MINUS
@@ -382,11 +349,6 @@ vplResult vplSplitClusters(const vplGeometry* geometry, const vplLightSet* light
                            const vplLightClusters* clusters, const vplClusterSplitDef* def,
                            vplLightClusters** clustersOut, vplClusterAgreement* agreementOut);
 
-typedef enum vplSecondWeight {
-    VPL_SECOND_WEIGHT_COSINE = 0, // 4 (1 - p^2) / (1 + p^2)^3: a diffuse light (default)
-    VPL_SECOND_WEIGHT_PRINTED     // 1: the document gives none
-} vplSecondWeight;
-
 typedef struct vplSecondBounceDef {
     int count;              // samples of all clusters together, [0, VPL_MAX_LIGHTS]; default 256
     vplSecondWeight weight; // default VPL_SECOND_WEIGHT_COSINE
@@ -422,9 +384,9 @@ vplNextBounceDef vplDefaultNextBounceDef(void);
 vplResult vplShootNextBounce(const vplGeometry* geometry, const vplLightSet* lights,
                              const vplNextBounceDef* def, vplLightSet** setOut);
 
-// ---- lights of kernels
+// ---- lights as shading takes them
 
-// A virtual light as kernels read it.
+// A virtual light as vplShadeView and vplShadePoints take it.
 typedef struct vplShadeLight {
     float px, py, pz; // metres
     float nx, ny, nz; // unit

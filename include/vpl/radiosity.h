@@ -4,6 +4,7 @@
 #ifndef VPL_RADIOSITY_H
 #define VPL_RADIOSITY_H
 
+#include <vpl/choices.h>
 #include <vpl/geometry.h>
 #include <vpl/image.h>
 #include <vpl/raster.h>
@@ -86,21 +87,6 @@ vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchS
                                      float v);
 
 // ---- form factors
-
-typedef enum vplFormFactorKind {
-    // Stratified pairs of points with a shadow ray each; `analytic` decides about the unoccluded part.
-    VPL_FORM_FACTORS_MONTE_CARLO = 0,
-    // One pair of points, the incentres: A_j cos cos / (pi r^2) V, as Hemgren has it.
-    VPL_FORM_FACTORS_INCENTRE
-} vplFormFactorKind;
-
-// Correction of rows of form factors whose sums are not those of a closed or open room.
-typedef enum vplRowSums {
-    VPL_ROW_SUMS_USUAL = 0, // clamped for Monte Carlo, kept for incentres
-    VPL_ROW_SUMS_KEEP,
-    VPL_ROW_SUMS_CLAMP,    // scale factors, alike in both directions, until no row's sum is above 1
-    VPL_ROW_SUMS_NORMALISE // scale until the sum of every row that is not 0 is 1: for closed rooms
-} vplRowSums;
 
 // The largest matrix of form factors; larger scenes need the hierarchy (vplLinks).
 #define VPL_MAX_FORM_FACTOR_BYTES ((int64_t)1 << 30)
@@ -204,16 +190,6 @@ void vplLinks_Destroy(vplLinks* links);
 
 // ---- solvers of B = E + rho F B
 
-typedef enum vplSolver {
-    // Each side uses the new values of the sides before it. Source: Hemgren, Algorithm 1.
-    VPL_SOLVER_GAUSS_SEIDEL = 0,
-    // One sweep is one bounce. Links are always solved by Jacobi.
-    VPL_SOLVER_JACOBI,
-    // Progressive refinement: the side with the most unshot power sends it to all others. As many shots as
-    // there are sides count as one sweep.
-    VPL_SOLVER_SHOOTING
-} vplSolver;
-
 enum { VPL_MAX_SWEEPS = 1 << 20 };
 
 typedef struct vplSolveDef {
@@ -232,16 +208,6 @@ typedef struct vplSolveDef {
 } vplSolveDef;
 
 vplSolveDef vplDefaultSolveDef(void);
-
-typedef struct vplSolveStats {
-    vplSolver solver; // the one used: Jacobi for links, whatever the def says
-    int iterations;
-    double residual; // of the last sweep, as in vplSolveDef; 0 where there was none
-    // The spectral radius of rho F, estimated from below: one sweep of Jacobi shrinks errors by this factor.
-    // At 1 and above there is no solution. 0: no light is exchanged, or vplSolveDef.spectrum is false.
-    double spectralRadius;
-    double rowSumMin, rowSumMean, rowSumMax; // of F as used; the mean is weighted by area
-} vplSolveStats;
 
 // The exchange of light between sides: by form factors or by links.
 typedef struct vplTransport {
@@ -267,13 +233,6 @@ vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* sour
                                vplRgb* residualOut);
 
 // ---- from patches to pictures
-
-// The weights of the sides that meet at a vertex.
-typedef enum vplVertexWeight {
-    VPL_VERTEX_WEIGHT_ANGLE = 0, // the angle of their corner, times the fraction of their cells that is open
-    VPL_VERTEX_WEIGHT_AREA,      // the area of their open cells
-    VPL_VERTEX_WEIGHT_EQUAL      // equal weights, whether cells are open or not, as Hemgren has it
-} vplVertexWeight;
 
 // The triangles that are drawn: the patches, cut where vertices of others lie on their edges, so that there
 // are no cracks and light is continuous. Patches share a vertex if their planes are within 20 degrees or they

@@ -12,13 +12,13 @@ VPL_HEADER_BEGIN
 #define VPL_MAX_MAGNITUDE 1e15f
 
 typedef struct vplCameraDef {
-    vplVec3 eye;     // metres; default (0, 0, 5)
-    vplVec3 target;  // metres, not the eye; default (0, 0, 0)
-    vplVec3 up;      // any length but 0, not parallel to the view; default (0, 1, 0)
-    double fovY;     // full vertical angle of view, radians, (0, pi); default 40 degrees
-    double near;     // metres, > 0; default 0.1
-    double far;      // metres, > near; default 100
-    uint32_t cookie; // set by vplDefaultCameraDef
+    vplVec3 eye;      // metres; default (0, 0, 5)
+    vplVec3 target;   // metres, not the eye; default (0, 0, 0)
+    vplVec3 up;       // any length but 0, not parallel to the view; default (0, 1, 0)
+    double fovY;      // full vertical angle of view, radians, (0, pi); default 40 degrees
+    double nearPlane; // metres, > 0; default 0.1
+    double farPlane;  // metres, > nearPlane; default 100
+    uint32_t cookie;  // set by vplDefaultCameraDef
 } vplCameraDef;
 
 vplCameraDef vplDefaultCameraDef(void);
@@ -147,27 +147,6 @@ typedef struct vplEnvironmentDef {
 
 vplEnvironmentDef vplDefaultEnvironmentDef(void);
 
-// A keyframe of a camera; the fields are those of vplCameraDef.
-typedef struct vplCameraKey {
-    double frame; // [-VPL_MAX_FRAME, VPL_MAX_FRAME]
-    vplVec3 eye, target, up;
-    double fovY;
-} vplCameraKey;
-
-// A keyframe of an emitter; the fields are those of vplEmitterDef.
-typedef struct vplEmitterKey {
-    double frame; // [-VPL_MAX_FRAME, VPL_MAX_FRAME]
-    vplVec3 position, direction;
-    vplRgb intensity;
-} vplEmitterKey;
-
-// Most keys of a path, and the largest magnitude of a frame.
-enum { VPL_MAX_KEYS = 1 << 20, VPL_MAX_FRAME = 1000000000 };
-
-// A key with the values of the def. Change those that the path changes.
-vplCameraKey vplMakeCameraKey(const vplCameraDef* def, double frame);
-vplEmitterKey vplMakeEmitterKey(const vplEmitterDef* def, double frame);
-
 // A declared scene. Rendering does not change it.
 typedef struct vplScene vplScene;
 
@@ -189,9 +168,6 @@ typedef struct vplModelSceneDef {
 
 vplModelSceneDef vplDefaultModelSceneDef(void);
 
-// True for a path that ends in .obj, .ply, .stl, .gltf or .glb, in either case.
-bool vplIsModelPath(const char* path);
-
 // Reads a scene file; examples/scenes/README.md describes the format. A model file (see
 // vplIsModelPath) is a scene, too; what the def adds to it is logged. For other files the def has no effect. VPL_FILE_ERROR,
 // VPL_OUT_OF_MEMORY, VPL_INVALID_ARGUMENT (the def), VPL_LIMIT (more than 256 MiB from a device or a
@@ -209,19 +185,6 @@ vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneO
 // NULL or empty, and bytes that are NULL with a size.
 vplResult vplScene_LoadMemory(vplContext* context, const vplMemoryFile* files, int count,
                               const vplModelSceneDef* def, vplScene** sceneOut);
-
-// Where the scene's own (0, 0, 0) lies in the caller's space, metres; (0, 0, 0) in a new scene. All positions
-// of the scene, of its geometry and of its lights are relative to it, in float: a scene far from (0, 0, 0),
-// such as 1e6 m, keeps its digits only if its positions are given relative to a near origin. Setting it moves
-// nothing; it is added, in double, to positions that are written: by vpl lights, vpl info and in PLY files,
-// which then hold doubles, good to 2^-24 of the distance from the origin. Each component in [-1e15, 1e15].
-//
-// vplScene_Load sets it where the middle of what a scene file places is more than 32 times as far from (0, 0,
-// 0), along some axis, as from the outermost thing; then to the middle, rounded to a multiple of a power of
-// two that is at least the scene's size. Else it stays 0, and scenes keep their bits. What it places are eyes,
-// targets and their keys, translations of objects, and positions of lights; not the vertices of meshes.
-vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3]);
-void vplScene_GetOrigin(const vplScene* scene, double originOut[3]);
 
 // Each checks a def, copies it and returns its index in *indexOut (may be NULL). VPL_INVALID_ARGUMENT for a
 // value out of range, which the message names; VPL_OUT_OF_MEMORY; for textures VPL_CANCELLED (see vplContext_SetProgress).
@@ -254,65 +217,10 @@ vplResult vplScene_SetEmitter(vplScene* scene, int index, const vplEmitterDef* d
 vplResult vplScene_SetTransform(vplScene* scene, int object, const vplMat4* transform);
 vplResult vplScene_SetObjectMaterial(vplScene* scene, int object, int material);
 
-// Makes a camera or an emitter move along keyframes: linear interpolation between two keys, constant before
-// the first and after the last. Frames must increase, and the values at each key must be valid for a def.
-// Replaces the path that was set before; with 0 keys it stands still, as declared. VPL_INVALID_ARGUMENT,
-// VPL_OUT_OF_MEMORY.
-vplResult vplScene_SetCameraPath(vplScene* scene, int index, const vplCameraKey* keys, int count);
-vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKey* keys, int count);
-
-// Reads an OBJ file, with the MTL files that it names, as one mesh (see examples/scenes/README.md). Adds the
-// materials that its faces use (Kd reflectance, Ke emission) under the names "file.obj:name", and a grey one
-// for faces without a material. Unsupported statements are logged once each, as warnings. VPL_FILE_ERROR,
-// VPL_OUT_OF_MEMORY, VPL_LIMIT, or VPL_PARSE_ERROR with "file:line:column:" in its message.
-vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut);
-
-// Reads an OBJ, PLY or STL file, by its ending, as one mesh. A PLY or STL file adds one unnamed grey material, or a white
-// one if the vertices have colours. VPL_INVALID_ARGUMENT for another ending; otherwise as vplScene_LoadObj.
-vplResult vplScene_LoadMesh(vplScene* scene, const char* path, int* indexOut);
-
-// Adds what a model file places as objects: one for an OBJ, PLY or STL file, one for each node of a glTF file that has a
-// mesh, which all nodes that name it share. Each is as the def says (type and mesh have no effect), its own place in the
-// file inside the def's transform; material -1: those of the file. Cameras and lights of the file are left out. The
-// objects are countOut many from *firstOut on (both may be NULL). As vplScene_LoadMesh.
-vplResult vplScene_LoadModel(vplScene* scene, const char* path, const vplObjectDef* def, int* firstOut,
-                             int* countOut);
-
 int vplScene_GetCameraCount(const vplScene* scene);
-int vplScene_GetTextureCount(const vplScene* scene);
-int vplScene_GetMaterialCount(const vplScene* scene);
-int vplScene_GetMeshCount(const vplScene* scene);
-int vplScene_GetObjectCount(const vplScene* scene);
-int vplScene_GetEmitterCount(const vplScene* scene);
 
-// The declared defs; the scene owns their names and arrays. The index must be in range.
+// A camera as it was declared. The index must be in range.
 const vplCameraDef* vplScene_GetCamera(const vplScene* scene, int index);
-const vplTextureDef* vplScene_GetTexture(const vplScene* scene, int index); // without `texels` and `linear`
-const vplMaterialDef* vplScene_GetMaterial(const vplScene* scene, int index);
-const vplMeshDef* vplScene_GetMesh(const vplScene* scene, int index);
-const vplObjectDef* vplScene_GetObject(const vplScene* scene, int index);
-const vplEmitterDef* vplScene_GetEmitter(const vplScene* scene, int index);
-
-// The environment as it was set, with a copy of the picture that the scene owns; of a sky, the picture is the one that
-// was made of it, without the sun.
-const vplEnvironmentDef* vplScene_GetEnvironment(const vplScene* scene);
-
-// The emitter that is the sun of the scene's sky; -1: there is none.
-int vplScene_GetSun(const vplScene* scene);
-
-// The keys of a path, which the scene owns; NULL and 0 if there is none. The index must be in range.
-const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut);
-const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut);
-
-// The camera or emitter at a frame, a finite number. VPL_INVALID_ARGUMENT if the interpolated values are
-// invalid: the eye meets the target, the view meets the up vector, or opposite directions cancel.
-vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vplCameraDef* defOut);
-vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut);
-
-// Hash of all that pictures depend on: cameras, textures, materials, meshes, objects, emitters and their paths, in
-// their order, without names, and the environment. The same in every process and on every machine; it takes a pass over the
-// scene's data.
-uint64_t vplScene_GetHash(const vplScene* scene);
 
 vplContext* vplScene_GetContext(const vplScene* scene);
 

@@ -24,7 +24,7 @@ typedef struct vplView {
     vplVec3 eye, right, up, forward; // right-handed, unit
     double scaleX, scaleY;           // 1 / tangent of the half-angle, across and up
     double offsetX, offsetY;         // position of the sample in the pixel, from its centre; in half pictures
-    double near, far;                // metres
+    double nearPlane, farPlane;      // metres
     int width, height;               // pixels
 } vplView;
 
@@ -41,34 +41,10 @@ bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y);
 // near and 0 at the far plane (vplFramebuffer.reversedDepth).
 void vplView_ToClip(const vplView* view, const vplVec3* points, int count, float (*clipOut)[4]);
 
-// Prepares the lights of a set for kernels: fills at most out[0 .. set->lightCount) and returns how many.
+// Prepares the lights of a set for shading: fills at most out[0 .. set->lightCount) and returns how many.
 // Lights of step 0 that are the emitter itself are left out. Keller's lights are physical, also with
 // documented attenuation.
 int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out);
-
-typedef struct vplLightFormula {
-    vplLighting lighting;
-    float minDistance; // clamp distance, metres; 0: no clamp; physical only
-} vplLightFormula;
-
-// Adds lights[0 .. count) to the irradiance of 16 points, one after another.
-//   documented: E += L (n.l)+                       (Franchi and Ferrante, no distance, isotropic)
-//   physical:   E += I (n.l)+ (m.-l)+ / max(d^2, minDistance^2)   (Keller 1997, clamped)
-// l is the unit vector to the light, m the light's normal, minDistance the clamp distance (metres, 0: no
-// clamp). A point that coincides with a light receives nothing from it. Distances up to 1e18 m; below 1e-19 m
-// the square underflows and the result is between 0 and the clamped value.
-void vplAccumulateLights(const vplContext* context, vplLightFormula formula, const vplSurface* surface,
-                         const vplShadeLight* lights, int count, float irradiance[3][VPL_LANES]);
-
-// Ways to add up virtual lights. The first three give the same bits.
-typedef enum vplAccumulation {
-    VPL_ACCUMULATE_MULTIPASS = 0, // one pass over the scene per light, depth EQUAL, additive
-    VPL_ACCUMULATE_BATCHED,       // one pass per `batch` lights
-    VPL_ACCUMULATE_DEFERRED,      // one pass for a G-buffer, then all lights per tile
-    VPL_ACCUMULATE_INTERLEAVED,   // every K^2-th light per pixel, then means of neighbours on one surface
-    VPL_ACCUMULATE_LIGHTCUTS,     // clusters of a light tree, as fine as an error bound requires
-    VPL_ACCUMULATE_USUAL          // vplRender chooses by the method
-} vplAccumulation;
 
 // The content of the picture.
 typedef enum vplShadeOutput {

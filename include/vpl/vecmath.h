@@ -35,19 +35,6 @@ vplMat4 vplMat4_Multiply(const vplMat4* a, const vplMat4* b);
 // VPL_PI / 2 has the elements 0 and 1 without rounding errors.
 vplMat4 vplMat4_FromParts(vplVec3 translate, const double rotate[3], vplVec3 scale);
 
-// World to view space of a camera at `eye` that looks at `target`, which is along -z in view space.
-vplMat4 vplMat4_LookAt(vplVec3 eye, vplVec3 target, vplVec3 up);
-
-// View to clip space. Depth z / w is 0 at `near` and 1 at `far` (metres, 0 < near < far). fovY is the full
-// vertical angle of view in (0, pi) radians; `aspect` is width / height.
-vplMat4 vplMat4_Perspective(double fovY, double aspect, double near, double far);
-
-// Transforms the point p, with w = 1, by the affine part of m; no perspective divide.
-vplVec3 vplMat4_TransformPoint(const vplMat4* m, vplVec3 p);
-
-// Transforms the direction d, with w = 0: translation has no effect.
-vplVec3 vplMat4_TransformDirection(const vplMat4* m, vplVec3 d);
-
 VPL_HEADER_END
 
 #endif

@@ -37,8 +37,9 @@ bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut);
 typedef struct vplCubeMapDef {
     vplVec3 position; // metres
     int size;         // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
-    float near;       // metres, > 0: nearer surfaces cast no shadow; 0 (default): far * 2^-64
-    float far; // metres, > near: unit of the stored distances; 0 (default): distance of the farthest vertex
+    float nearPlane;  // metres, > 0: nearer surfaces cast no shadow; 0 (default): farPlane * 2^-64
+    // Metres, > nearPlane: unit of the stored distances; 0 (default): distance of the farthest vertex.
+    float farPlane;
     uint32_t cookie; // set by vplDefaultCubeMapDef
 } vplCubeMapDef;
 
@@ -48,8 +49,8 @@ vplCubeMapDef vplDefaultCubeMapDef(void);
 typedef struct vplCubeMap {
     vplVec3 position;
     int size;
-    float near, far;
-    float* texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
+    float nearPlane, farPlane;
+    float* texels; // [face][row][column]: radial distance / farPlane, not clamped; +infinity where nothing is
     struct vplCubeBounds* bounds; // NULL before vplCubeMap_FindBounds
     vplRasterStats stats;
     vplContext* context;
@@ -57,7 +58,7 @@ typedef struct vplCubeMap {
 } vplCubeMap;
 
 // Draws every object into the six faces. Source: Franchi and Ferrante, Virtual Point Lights, "Rendering the
-// Cube Shadow Map". Departs: distances are not clamped to far, because that falsely shadows the corners of
+// Cube Shadow Map". Departs: distances are not clamped to farPlane, because that falsely shadows the corners of
 // the cube.
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
                             void* user, vplCubeMap** mapOut);
@@ -86,8 +87,8 @@ typedef enum vplBiasRule {
 
 typedef struct vplShadowDef {
     vplBiasRule biasRule; // default VPL_BIAS_AUTO
-    // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): far * texel half-angle + the disc's radius
-    // at far, and 5.6 b_s, which is free of acne up to 79.9 degrees.
+    // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): farPlane * texel half-angle + the disc's
+    // radius at farPlane, and 5.6 b_s, which is free of acne up to 79.9 degrees.
     float biasStatic, biasDynamic;
     int pcfSamples; // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
     // off: radius of the disc of samples, metres, >= 0. Negative (default): half a texel's diagonal at the
@@ -119,14 +120,6 @@ float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine);
 // The shadow factor s in [0, 1] at a surface point: the fraction of samples with something nearer to the
 // light. The samples lie on a disc perpendicular to the light, so that no seams show at the cube's edges.
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal);
-
-// 16 points at once: the positions and unit normals of a block.
-typedef struct vplSurface {
-    float px[VPL_LANES], py[VPL_LANES], pz[VPL_LANES];
-    float nx[VPL_LANES], ny[VPL_LANES], nz[VPL_LANES];
-} vplSurface;
-
-void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES]);
 
 // ---- hemi-octahedral maps: many small shadow maps of virtual lights, which shine to one side of their
 // surface
@@ -175,15 +168,15 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
 // NULL is allowed.
 void vplHemiMaps_Destroy(vplHemiMaps* maps);
 
-// The shadow factor of 16 points: 1 where something nearer to the map's position hides it, and where the
-// position lies behind the point's surface; else 0.
+// The shadow factor of a surface point with a unit normal: 1 where something nearer to the map's position hides it, and where
+// the position lies behind the point's surface; else 0.
 // A ray gives the same answer except within a band. The centre of a texel is off a point at distance r, in
 // the direction (x, y, z), by at most the footprint f = sqrt(2) (|x| + |y| + z) / size. Along the point's
 // plane, at the angle T to the light, it is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r,
 // as in VPL_BIAS_EXACT. Blockers nearer to the point than 1.5 f are ignored. So map and ray agree where every
 // blocker is further than 2.5 f + b from the point and blocks either all or none of the rays to the point's
 // plane within f around it.
-void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
+float vplHemiMap_Factor(const vplHemiMap* map, vplVec3 position, vplVec3 normal);
 
 // ---- paraboloid maps: shadow maps of clusters of virtual lights
 
@@ -261,7 +254,7 @@ typedef struct vplParaboloidTexel {
 bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry,
                              vplParaboloidTexel texel, vplHit* hitOut, vplVec3* directionOut);
 
-// The shadow factor in [0, 1] of 16 points: the bilinear weight of those of the four texels around the point
+// The shadow factor in [0, 1] of a surface point with a unit normal: the bilinear weight of those of the four texels around the point
 // that show something nearer to the map's position than the point's own plane. The plane may face either way,
 // because lights beside the map's position may be in front of it. Points in a hemisphere that was not drawn
 // get 1. Texels beyond the rim of a single hemisphere hide nothing.
@@ -271,8 +264,7 @@ bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geo
 // Blockers nearer to the point than f / 2 are ignored. So map and ray agree where every blocker is further
 // than 2.5 f + b from the point and blocks either all or none of the rays to the point's plane within f
 // around it.
-void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
-                                  float factorOut[VPL_LANES]);
+float vplParaboloidMap_Factor(const vplParaboloidMap* map, vplVec3 position, vplVec3 normal);
 
 VPL_HEADER_END
 

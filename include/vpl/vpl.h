@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// libvpl: indirect light on the CPU, the same bits everywhere. Includes all public headers.
+// libvpl: indirect light on the CPU, the same bits everywhere. A program that renders needs this header only: it declares
+// contexts, scenes, options by name, pictures, plans, renders and pieces of pictures. <vpl/stages.h> declares every stage by
+// itself.
 #ifndef VPL_VPL_H
 #define VPL_VPL_H
 
@@ -7,13 +9,6 @@
 #include <vpl/vecmath.h>
 #include <vpl/image.h>
 #include <vpl/scene.h>
-#include <vpl/geometry.h>
-#include <vpl/raster.h>
-#include <vpl/visibility.h>
-#include <vpl/formulas.h>
-#include <vpl/lights.h>
-#include <vpl/shading.h>
-#include <vpl/radiosity.h>
 #include <vpl/options.h>
 #include <vpl/plan.h>
 #include <vpl/render.h>

@@ -3,7 +3,7 @@
 #ifndef VPL_BASE_CONTEXT_H
 #define VPL_BASE_CONTEXT_H
 
-#include <vpl/base.h>
+#include <vpl/machine.h>
 
 #include <pthread.h>
 #include <stdatomic.h>

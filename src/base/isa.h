@@ -5,7 +5,7 @@
 #ifndef VPL_BASE_ISA_H
 #define VPL_BASE_ISA_H
 
-#include <vpl/base.h>
+#include <vpl/machine.h>
 
 vplIsa vplBestIsa(void);
 bool vplHasIsa(vplIsa isa);

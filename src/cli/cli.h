@@ -3,7 +3,7 @@
 #ifndef VPL_CLI_CLI_H
 #define VPL_CLI_CLI_H
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <jansson.h>
 #include <stdio.h>

@@ -5,6 +5,8 @@
 // directions are even in solid angle, so that densities need no sine; surfaces receive the mean of the interpolated
 // radiance over a pixel. Where they received the interpolated radiance itself, a sun of one pixel was off by 2 % with 256
 // samples.
+#include <vpl/scenetools.h>
+
 #include "base/arena.h"
 #include "geometry/emission.h"
 #include "math/scalar.h"

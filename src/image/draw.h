@@ -3,7 +3,7 @@
 #ifndef VPL_IMAGE_DRAW_H
 #define VPL_IMAGE_DRAW_H
 
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 // Linear RGB of t, clamped to [0, 1]: black, violet, red, orange, yellow, white.
 vplRgb vplFalseColour(float t);

@@ -4,7 +4,7 @@
 #ifndef VPL_IMAGE_IMAGE_FILE_H
 #define VPL_IMAGE_IMAGE_FILE_H
 
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 #include "base/file.h"
 

@@ -3,7 +3,7 @@
 #ifndef VPL_IMAGE_METRICS_H
 #define VPL_IMAGE_METRICS_H
 
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 // Fails unless both pictures have the same size and finite pixels.
 vplResult vplRequirePair(const vplImage* a, const vplImage* b);

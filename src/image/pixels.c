@@ -70,7 +70,8 @@ static bool isFormat(vplPixelFormat format)
     return (int)format >= 0 && format <= VPL_PIXELS_NUMBER_FLOAT;
 }
 
-size_t vplPixelFormat_GetSize(vplPixelFormat format)
+// Bytes of one pixel.
+static size_t sizeOf(vplPixelFormat format)
 {
     return isFormat(format) ? (size_t)FORMATS[format].channels * (FORMATS[format].codes ? 1 : sizeof(float))
                             : 0;
@@ -85,7 +86,7 @@ static vplResult checkPixels(const vplImage* image, const vplPixelsDef* p, ptrdi
                              ptrdiff_t rowStride)
 {
     vplContext* context = image->context;
-    const ptrdiff_t size = (ptrdiff_t)vplPixelFormat_GetSize(p->format);
+    const ptrdiff_t size = (ptrdiff_t)sizeOf(p->format);
     if (p->cookie != VPL_PIXELS_COOKIE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplPixelsDef was not made by vplDefaultPixelsDef");
     }
@@ -127,7 +128,7 @@ static void copyRow(const float* values, const uint8_t* codes, int width, const 
 
 vplResult vplImage_CopyTo(const vplImage* image, const vplPixelsDef* p)
 {
-    const ptrdiff_t size = (ptrdiff_t)vplPixelFormat_GetSize(p->format);
+    const ptrdiff_t size = (ptrdiff_t)sizeOf(p->format);
     const ptrdiff_t pixelStride = p->pixelStride != 0 ? p->pixelStride : size;
     const ptrdiff_t rowStride = p->rowStride != 0 ? p->rowStride : pixelStride * image->width;
     TRY(checkPixels(image, p, pixelStride, rowStride));

@@ -4,7 +4,7 @@
 #ifndef VPL_IMAGE_SRGB_H
 #define VPL_IMAGE_SRGB_H
 
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 enum {
     // The bits of a float above these choose its slot: 128 slots per octave.

@@ -3,7 +3,7 @@
 #ifndef VPL_IMAGE_TONE_H
 #define VPL_IMAGE_TONE_H
 
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 // Luminance of linear sRGB (Rec. 709).
 static inline double vplLuminance(const float* pixel)

@@ -5,6 +5,8 @@
 
 #include <vpl/lights.h>
 
+#include "visibility/blocks.h"
+
 #include "base/isa.h"
 
 struct vplViewBlock;
@@ -14,13 +16,15 @@ struct vplViewBlock;
 typedef void vplReflectFcn(const struct vplViewBlock* block, const vplShadeLight* light, float inverseClamp,
                            float reflectedOut[VPL_LANES]);
 
-// Tolerance of vplReflectiveMap_FactorBlock, in sides of a texel: something that is nearer to the emitter than
+// Tolerance of vplReflectiveMap_Factor, in sides of a texel: something that is nearer to the emitter than
 // a point and its plane by less than that does not shadow it. This removes acne where walls meet in a corner;
 // more hides real shadows. In Sponza 0.36 % of the lit pixels are dark in the map only, 0.53 % by rays only;
 // 0.68 and 0.46 % without tolerance (bench/rsm).
 #define VPL_REFLECTIVE_TOLERANCE 0.5f
 
-// See vplReflectiveMap_FactorBlock.
+// See vplReflectiveMap_Factor.
+void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
+                                  float factorOut[VPL_LANES]);
 typedef void vplReflectiveFactorFcn(const vplReflectiveMap* map, const vplSurface* surface,
                                     float factor[restrict VPL_LANES]);
 

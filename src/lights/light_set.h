@@ -6,6 +6,7 @@
 #include <vpl/lights.h>
 
 #include "math/vec.h"
+#include "visibility/blocks.h"
 #include "visibility/hemi_map.h"
 
 #include <stddef.h>

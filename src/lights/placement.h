@@ -7,6 +7,7 @@
 
 #include "base/arena.h"
 #include "geometry/bvh.h"
+#include "visibility/blocks.h"
 
 // Sixteen points of one part of the picture.
 typedef struct vplViewBlock {

@@ -193,3 +193,11 @@ void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface*
 {
     vplGetLightsKernels(map->context->isa)->reflectiveFactor(map, surface, factorOut);
 }
+
+float vplReflectiveMap_Factor(const vplReflectiveMap* map, vplVec3 position, vplVec3 normal)
+{
+    const vplSurface surface = vplSurface_OfPoint(position, normal);
+    float factor[VPL_LANES];
+    vplReflectiveMap_FactorBlock(map, &surface, factor);
+    return factor[0];
+}

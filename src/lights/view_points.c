@@ -82,9 +82,10 @@ static void sampleCell(void* data, int cell, int worker)
         // The direction is one metre along the view axis, so that t is a depth; the ray starts at the near
         // plane.
         const vplVec3 way = vplAdd(s->forward, vplAdd(vplScale(x, s->right), vplScale(y, s->up)));
-        const vplRay ray = {vplAdd(camera->eye, vplScale((float)camera->near, way)), way, {0, 0}};
+        const vplRay ray = {vplAdd(camera->eye, vplScale((float)camera->nearPlane, way)), way, {0, 0}};
         vplHit hit;
-        if (vplGeometry_ClosestHit(s->geometry, &ray, &hit) && (double)hit.t <= camera->far - camera->near) {
+        if (vplGeometry_ClosestHit(s->geometry, &ray, &hit) &&
+            (double)hit.t <= camera->farPlane - camera->nearPlane) {
             putPoint(s, &hit, way, b, l);
         }
     }

@@ -138,35 +138,6 @@ vplMat4 vplMat4_FromParts(vplVec3 translate, const double rotate[3], vplVec3 sca
     return vplAffine_ToMat4(&a);
 }
 
-vplMat4 vplMat4_LookAt(vplVec3 eye, vplVec3 target, vplVec3 up)
-{
-    vplVec3 back = vplNormalize(vplSub(eye, target));
-    vplVec3 right = vplNormalize(vplCross(up, back));
-    vplVec3 above = vplCross(back, right);
-    vplMat4 m = vplMat4_Identity();
-    const vplVec3 rows[3] = {right, above, back};
-    for (int i = 0; i < 3; i++) {
-        m.m[i] = rows[i].x;
-        m.m[4 + i] = rows[i].y;
-        m.m[8 + i] = rows[i].z;
-        m.m[12 + i] = -vplDot(rows[i], eye);
-    }
-    return m;
-}
-
-vplMat4 vplMat4_Perspective(double fovY, double aspect, double near, double far)
-{
-    double sine, cosine;
-    vplSinCos(fovY / 2, &sine, &cosine);
-    vplMat4 m = {{0}};
-    m.m[0] = (float)(cosine / (sine * aspect));
-    m.m[5] = (float)(cosine / sine);
-    m.m[10] = (float)(-far / (far - near));
-    m.m[11] = -1;
-    m.m[14] = (float)(-near * far / (far - near));
-    return m;
-}
-
 vplVec3 vplMat4_TransformPoint(const vplMat4* m, vplVec3 p)
 {
     return vplAdd(vplMat4_TransformDirection(m, p), vplVec(m->m[12], m->m[13], m->m[14]));

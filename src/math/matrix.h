@@ -26,4 +26,10 @@ vplAffine vplAffine_Inverse(const vplAffine* a);
 // Scales, then rotates about x, y and z by `quarters` quarter turns, then translates.
 vplAffine vplAffine_FromParts(vplVec3 translate, const double quarters[3], vplVec3 scale);
 
+// Transforms the point p, with w = 1, by the affine part of m; no perspective divide.
+vplVec3 vplMat4_TransformPoint(const vplMat4* m, vplVec3 p);
+
+// Transforms the direction d, with w = 0: translation has no effect.
+vplVec3 vplMat4_TransformDirection(const vplMat4* m, vplVec3 d);
+
 #endif

@@ -101,7 +101,8 @@ void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
     vplPath_Draw(path, CAMERA_SET, u);
     vplRay ray = vplPathScene_CameraRay(s, x, y, u);
     path->rays++;
-    if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit) || (double)hit.t > camera->far - camera->near) {
+    if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit) ||
+        (double)hit.t > camera->farPlane - camera->nearPlane) {
         if (s->def.emission && s->geometry->environment != NULL) {
             const vplVec3 sight = vplNormalize(ray.direction);
             vplRadiance_Add(sum, vplRadiance_Of(vplEnvironment_Radiance(s->geometry->environment, sight)));
@@ -117,6 +118,6 @@ void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
         particle = vplShootParticle(path, (double)u[2], start);
     }
     // Paths average over the pixel themselves: each looks up half of its width.
-    const float width = 0.5f * s->pixelWidth * (hit.t + (float)camera->near);
+    const float width = 0.5f * s->pixelWidth * (hit.t + (float)camera->nearPlane);
     followBounces(path, vplPathVertex_Make(s, &hit, ray.direction, width), &particle, sum);
 }

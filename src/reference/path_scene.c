@@ -106,9 +106,9 @@ vplRay vplPathScene_CameraRay(const vplPathScene* s, int x, int y, const float o
                    s->forward.y + across * s->right.y + upward * s->up.y,
                    s->forward.z + across * s->right.z + upward * s->up.z};
     vplRay ray = {.direction = vplVec((float)d[0], (float)d[1], (float)d[2])};
-    ray.origin =
-        vplVec((float)(camera->eye.x + camera->near * d[0]), (float)(camera->eye.y + camera->near * d[1]),
-               (float)(camera->eye.z + camera->near * d[2]));
+    ray.origin = vplVec((float)(camera->eye.x + camera->nearPlane * d[0]),
+                        (float)(camera->eye.y + camera->nearPlane * d[1]),
+                        (float)(camera->eye.z + camera->nearPlane * d[2]));
     return ray;
 }
 

@@ -4,7 +4,7 @@
 #ifndef VPL_REFERENCE_PATH_TRACE_H
 #define VPL_REFERENCE_PATH_TRACE_H
 
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 #include "reference/path_scene.h"
 

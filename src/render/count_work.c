@@ -322,7 +322,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
     s.pathDepth = 1 + 0.06 * fmax(doublings, 0);
     s.overlap = 1 + 0.1 * fmax(doublings, 0);
     if (p->castsRays || g->triangleCount < 1000) {
-        s.probe = probe(g, &p->view, (float)p->camera.near);
+        s.probe = probe(g, &p->view, (float)p->camera.nearPlane);
     }
     for (int i = 0; i < p->stageCount; i++) {
         works[i] = workOf(&s, (vplStageId)p->stages[i].id);

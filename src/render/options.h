@@ -3,7 +3,7 @@
 #ifndef VPL_RENDER_OPTIONS_H
 #define VPL_RENDER_OPTIONS_H
 
-#include <vpl/options.h>
+#include <vpl/stages.h>
 
 // The value of a number or choice; 0 for a seed.
 double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* options);

@@ -3,7 +3,7 @@
 #ifndef VPL_RENDER_PIECE_FILE_H
 #define VPL_RENDER_PIECE_FILE_H
 
-#include <vpl/pieces.h>
+#include <vpl/stages.h>
 
 #include "render/state_stream.h"
 

@@ -4,8 +4,7 @@
 #ifndef VPL_RENDER_STAGE_H
 #define VPL_RENDER_STAGE_H
 
-#include <vpl/plan.h>
-#include <vpl/render.h>
+#include <vpl/stages.h>
 
 #include "base/arena.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The environment of a scene: a copy of what was declared, and for a sky its picture and its sun.
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 #include "math/scalar.h"
 #include "math/vec.h"

@@ -2,7 +2,7 @@
 // Textures of glTF files: pictures in buffers, in data URIs and beside the file.
 #include "scene/gltf.h"
 
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 #include "base/file.h"
 #include "image/texels.h"

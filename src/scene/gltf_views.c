@@ -91,15 +91,20 @@ static vplResult readLens(vplGltf* g, const vplJson* camera, const vplModel* mod
     }
     TRY(vplJson_RequireObject(&lens));
     TRY(vplJson_ReadNumber(&lens, "yfov", &def->fovY));
-    TRY(vplJson_ReadNumber(&lens, "znear", &def->near));
+    TRY(vplJson_ReadNumber(&lens, "znear", &def->nearPlane));
     if (!(def->fovY > 0 && def->fovY < VPL_PI)) {
         return vplJson_Fail(&angle, "is %g, must be in (0, pi) radians", def->fovY);
     }
-    def->far = fmax(1.1 * farthest(g->scene, model, def->eye), 100 * def->near);
-    TRY(vplJson_ReadNumber(&lens, "zfar", &def->far));
+    def->farPlane = fmax(1.1 * farthest(g->scene, model, def->eye), 100 * def->nearPlane);
+    TRY(vplJson_ReadNumber(&lens, "zfar", &def->farPlane));
     const vplFault fault = vplCheckCamera(def);
-    return fault.field != NULL ? vplJson_Fail(&lens, "makes no camera: its %s %s", fault.field, fault.text)
-                               : VPL_SUCCESS;
+    if (fault.field == NULL) {
+        return VPL_SUCCESS;
+    }
+    const char* key = strcmp(fault.field, "nearPlane") == 0  ? "znear"
+                      : strcmp(fault.field, "farPlane") == 0 ? "zfar"
+                                                             : fault.field;
+    return vplJson_Fail(&lens, "makes no camera: its %s %s", key, fault.text);
 }
 
 static vplResult addCameraPath(vplGltf* g, const vplGltfMotion* motion, int node, int camera)

@@ -64,8 +64,8 @@ static vplResult addCamera(const Adder* a, const vplModelGround* ground)
     def.eye = vplRound3(eye);
     def.target = vplRound3(target);
     def.fovY = VPL_MODEL_FIELD;
-    def.near = 0.5 * nearest;
-    def.far = 1.1 * most;
+    def.nearPlane = 0.5 * nearest;
+    def.farPlane = 1.1 * most;
     TRY(requireFit(a, "a camera can look at: its", vplCheckCamera(&def)));
     vplLog(a->scene->context, VPL_LOG_WARNING,
            "%s: the file has no camera; one looks from (%g, %g, %g) at (%g, %g, %g)", a->path, eye[0], eye[1],

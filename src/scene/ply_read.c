@@ -4,7 +4,7 @@
 #include "scene/model.h"
 #include "scene/ply.h"
 
-#include <vpl/image.h>
+#include <vpl/imagetools.h>
 
 #include <math.h>
 #include <string.h>

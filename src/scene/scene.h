@@ -3,7 +3,7 @@
 #ifndef VPL_SCENE_SCENE_H
 #define VPL_SCENE_SCENE_H
 
-#include <vpl/scene.h>
+#include <vpl/scenetools.h>
 
 #include "base/arena.h"
 
@@ -106,5 +106,8 @@ vplFault vplCheckKeyFrame(double before, double frame);
 // The def with the values of the key.
 vplCameraDef vplApplyCameraKey(const vplCameraDef* def, const vplCameraKey* key);
 vplEmitterDef vplApplyEmitterKey(const vplEmitterDef* def, const vplEmitterKey* key);
+
+// The emitter that is the sun of the scene's sky; -1: there is none.
+int vplScene_GetSun(const vplScene* scene);
 
 #endif

@@ -46,7 +46,7 @@ static uint64_t addCamera(uint64_t state, const vplCamera* camera)
     const vplCameraDef* d = &camera->def;
     const vplCameraKey* keys = camera->track.keys;
     state = addVector(addVector(addVector(state, d->eye), d->target), d->up);
-    state = addNumber(addNumber(addNumber(state, d->fovY), d->near), d->far);
+    state = addNumber(addNumber(addNumber(state, d->fovY), d->nearPlane), d->farPlane);
     state = addInt(state, camera->track.count);
     for (int i = 0; i < camera->track.count; i++) {
         state = addNumber(addNumber(state, keys[i].frame), keys[i].fovY);

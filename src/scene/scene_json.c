@@ -23,7 +23,8 @@ static const char* keyOf(const vplJson* object, const char* field)
             return pairs[i][1];
         }
     }
-    return field;
+    // The file may leave these two out, and the default of one may not fit the other.
+    return strcmp(field, "nearPlane") == 0 ? "near" : strcmp(field, "farPlane") == 0 ? "far" : field;
 }
 
 vplResult vplJson_ReportFault(const vplJson* object, vplFault fault)
@@ -61,8 +62,8 @@ static vplResult readCamera(vplSceneLoader* l, const vplJson* camera)
     TRY(vplJson_ReadPosition(camera, "target", &def.target));
     TRY(vplJson_ReadFloats(camera, "up", 3, &def.up));
     TRY(vplJson_ReadAngle(camera, "fov_y", 0, 180, &def.fovY));
-    TRY(vplJson_ReadNumber(camera, "near", &def.near));
-    TRY(vplJson_ReadNumber(camera, "far", &def.far));
+    TRY(vplJson_ReadNumber(camera, "near", &def.nearPlane));
+    TRY(vplJson_ReadNumber(camera, "far", &def.farPlane));
     TRY(vplJson_ReportFault(camera, vplCheckCamera(&def)));
     int index;
     TRY(vplScene_AddCamera(l->scene, &def, &index));

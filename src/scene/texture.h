@@ -3,7 +3,7 @@
 #ifndef VPL_SCENE_TEXTURE_H
 #define VPL_SCENE_TEXTURE_H
 
-#include <vpl/scene.h>
+#include <vpl/scenetools.h>
 
 // Halving VPL_MAX_IMAGE_SIZE 14 times gives 1.
 enum { VPL_TEXTURE_LEVELS = 15, VPL_TEXTURE_CHANNELS = 4, VPL_TEXTURE_PROBES = 4 };

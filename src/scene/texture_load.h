@@ -3,7 +3,7 @@
 #ifndef VPL_SCENE_TEXTURE_LOAD_H
 #define VPL_SCENE_TEXTURE_LOAD_H
 
-#include <vpl/scene.h>
+#include <vpl/scenetools.h>
 
 typedef struct vplTextureFile {
     const char* path;     // of the picture, or with `bytes` a label that names it

@@ -75,12 +75,12 @@ vplFault vplCheckCamera(const vplCameraDef* def)
     if (!(def->fovY > 0 && def->fovY < VPL_PI)) {
         return fault("fovY", -1, "is %g, must be in (0, pi) radians", def->fovY);
     }
-    if (!(def->near > 0 && def->near <= VPL_MAX_MAGNITUDE_DOUBLE)) {
-        return fault("near", -1, "is %g, must be in (0, %g]", def->near, VPL_MAX_MAGNITUDE_DOUBLE);
+    if (!(def->nearPlane > 0 && def->nearPlane <= VPL_MAX_MAGNITUDE_DOUBLE)) {
+        return fault("nearPlane", -1, "is %g, must be in (0, %g]", def->nearPlane, VPL_MAX_MAGNITUDE_DOUBLE);
     }
-    if (!(def->far > def->near && def->far <= VPL_MAX_MAGNITUDE_DOUBLE)) {
-        return fault("far", -1, "is %g, must be greater than near (%g) and at most %g", def->far, def->near,
-                     VPL_MAX_MAGNITUDE_DOUBLE);
+    if (!(def->farPlane > def->nearPlane && def->farPlane <= VPL_MAX_MAGNITUDE_DOUBLE)) {
+        return fault("farPlane", -1, "is %g, must be greater than near (%g) and at most %g", def->farPlane,
+                     def->nearPlane, VPL_MAX_MAGNITUDE_DOUBLE);
     }
     return FINE;
 }

@@ -13,8 +13,8 @@ bool vplFindVisiblePoint(const vplGeometry* g, const vplView* view, double x, do
     const double upward = (1 - 2 * y / view->height) / view->scaleY;
     const vplVec3 d = vplAdd(view->forward,
                              vplAdd(vplScale((float)across, view->right), vplScale((float)upward, view->up)));
-    const vplRay ray = {vplAdd(view->eye, vplScale((float)view->near, d)), d, {0, 0}};
-    if (!vplGeometry_ClosestHit(g, &ray, &p->hit) || (double)p->hit.t > view->far - view->near) {
+    const vplRay ray = {vplAdd(view->eye, vplScale((float)view->nearPlane, d)), d, {0, 0}};
+    if (!vplGeometry_ClosestHit(g, &ray, &p->hit) || (double)p->hit.t > view->farPlane - view->nearPlane) {
         return false;
     }
     vplLitPoint_Face(p, g, d);

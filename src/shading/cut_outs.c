@@ -55,7 +55,7 @@ static float solidDistance(const vplShading* s, int triangle, vplVec3 sight)
 {
     const vplGeometry* g = s->geometry;
     if (triangle < 0) {
-        return (float)s->view->far;
+        return (float)s->view->farPlane;
     }
     const vplVec3 n = g->normals[triangle];
     const vplVec3 corner = vplGeometry_Corners(g, triangle).corner[0];
@@ -72,7 +72,7 @@ static bool findSeen(const vplShading* s, int triangle, const Pixel* p, int rank
 {
     const vplView* v = s->view;
     const vplVec3 sight = vplSightOf(v, p->x, p->y, at);
-    const float near = (float)v->near, offset[2] = {(float)v->offsetX, (float)v->offsetY};
+    const float near = (float)v->nearPlane, offset[2] = {(float)v->offsetX, (float)v->offsetY};
     vplPixelRay ray = {.ray = {vplAdd(v->eye, vplScale(near, sight)), sight, {0, 0}},
                        .rank = (float)rank / (float)p->points};
     memcpy(ray.pixel, offset, sizeof ray.pixel); // pictures that are averaged have different offsets

@@ -2,6 +2,7 @@
 // Tiles of the G-buffer: writing them, lighting them, and showing what they hold or a shadow factor. Light is
 // added in squares of 4 x 4 blocks, whose points, sums and lights stay in the first-level cache.
 #include "base/isa.h"
+#include "lights/kernels.h"
 #include "math/scalar.h"
 #include "shading/accumulate.h"
 #include "shading/edges.h"

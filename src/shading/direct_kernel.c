@@ -2,6 +2,7 @@
 // Emitters with their shadows. Compiled once per instruction set: processors forward a store only to loads
 // that are not wider, so kernels that read each other's vectors have the same width.
 #include "base/isa.h"
+#include "lights/kernels.h"
 #include "shading/shading.h"
 
 #include <float.h>

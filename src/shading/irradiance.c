@@ -4,6 +4,7 @@
 #include "geometry/bvh.h"
 #include "geometry/triangle.h"
 #include "lights/light_set.h"
+#include "shading/light_block.h"
 #include "shading/shading.h"
 
 #include <string.h>

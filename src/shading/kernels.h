@@ -7,6 +7,7 @@
 
 #include "base/isa.h"
 #include "lights/light_tree.h"
+#include "visibility/blocks.h"
 
 struct vplShading;
 struct vplDirectLight;

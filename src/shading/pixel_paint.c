@@ -20,7 +20,7 @@ float vplDistanceOf(const vplGeometry* geometry, const vplView* view, int triang
         most = vplMaxf(most, w);
     }
     const float w = offset / vplDot(normal, sight);
-    return vplMinf(vplMaxf(w, vplMaxf(least, (float)view->near)), most); // NaN becomes the least
+    return vplMinf(vplMaxf(w, vplMaxf(least, (float)view->nearPlane)), most); // NaN becomes the least
 }
 
 vplRgb vplReflectanceSeen(const vplGeometry* g, const vplView* view, int triangle, vplVec3 point)

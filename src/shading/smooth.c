@@ -57,7 +57,7 @@ static void findEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel
         vplPixelPoint(i, LAMP_RAYS, &x, &y);
         const vplSubPixel at = {(int)(256 * x) - 128, (int)(256 * y) - 128};
         const vplVec3 sight = vplSightOf(v, p->x, p->y, at);
-        const vplRay ray = {vplAdd(v->eye, vplScale((float)v->near, sight)), sight, {0, 0}};
+        const vplRay ray = {vplAdd(v->eye, vplScale((float)v->nearPlane, sight)), sight, {0, 0}};
         float one[3];
         emissionOf(s, cache, vplGeometry_ClosestHit(s->geometry, &ray, &hit) ? hit.triangle : -1, one);
         for (int c = 0; c < 3; c++) {

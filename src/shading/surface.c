@@ -19,8 +19,8 @@ vplView vplView_Create(const vplCameraDef* camera, int width, int height)
     view.scaleY = cosine / sine;
     view.scaleX = view.scaleY * height / width;
     view.offsetX = view.offsetY = 0;
-    view.near = camera->near;
-    view.far = camera->far;
+    view.nearPlane = camera->nearPlane;
+    view.farPlane = camera->farPlane;
     view.width = width;
     view.height = height;
     return view;
@@ -50,7 +50,7 @@ static ViewPoint toView(const vplView* v, vplVec3 p)
 bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y)
 {
     ViewPoint p = toView(view, point);
-    if (!(p.depth >= view->near)) {
+    if (!(p.depth >= view->nearPlane)) {
         return false;
     }
     *x = (float)((p.x / p.depth * 0.5 + 0.5) * view->width);
@@ -64,7 +64,7 @@ static void toClip(const vplView* view, vplVec3 point, float* x, float* y, float
     const ViewPoint v = toView(view, point);
     *x = (float)v.x;
     *y = (float)v.y;
-    *z = (float)((view->far - v.depth) * (view->near / (view->far - view->near)));
+    *z = (float)((view->farPlane - v.depth) * (view->nearPlane / (view->farPlane - view->nearPlane)));
     *w = (float)v.depth;
 }
 

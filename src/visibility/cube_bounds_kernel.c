@@ -74,7 +74,7 @@ static inline Texel texelOf(float stored, float far, float z, float s, float u)
 static vplCubeRegion boundRegion(const vplCubeMap* map, int face, int offset, const Directions* d)
 {
     const int size = map->size;
-    const float far = map->far;
+    const float far = map->farPlane;
     const float* texels = map->texels + ((size_t)face * (size_t)size + (size_t)d->row) * (size_t)size;
     // Bounds of x, y, z and the stored distance.
     _Alignas(64) float least[4][VPL_LANES], most[4][VPL_LANES];

@@ -75,12 +75,12 @@ static vplResult recordFace(Faces* f, const vplGeometry* g, const vplCubeMap* ma
     TRY(vplRaster_Create(g->context, &framebuffer, &f->rasters[face]));
     for (int i = 0; i < g->objectCount; i++) {
         ObjectUniforms* object = &f->objects[face * g->objectCount + i];
-        *object = (ObjectUniforms){vplCube_GetFrame(face), map->position, map->near,
+        *object = (ObjectUniforms){vplCube_GetFrame(face), map->position, map->nearPlane,
                                    g->positions + g->objects[i].firstVertex};
         vplPipeline pipeline = vplDefaultPipeline();
         pipeline.vertex = faceVertices;
         pipeline.vertexUniforms = object;
-        pipeline.distanceScale = 1 / map->far;
+        pipeline.distanceScale = 1 / map->farPlane;
         TRY(vplRaster_Draw(f->rasters[face], &f->meshes[i], &pipeline));
     }
     return VPL_SUCCESS;
@@ -130,10 +130,12 @@ static vplResult checkDef(const vplContext* context, const vplCubeMapDef* def)
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplCubeMapDef.size is %d, must be in [1, %d]",
                        def->size, VPL_MAX_SHADOW_MAP);
     }
-    if (!(def->far >= 0 && def->near >= 0 && isfinite(def->far) && (def->far == 0 || def->near < def->far))) {
+    if (!(def->farPlane >= 0 && def->nearPlane >= 0 && isfinite(def->farPlane) &&
+          (def->farPlane == 0 || def->nearPlane < def->farPlane))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "vplCubeMapDef.near and far are %g and %g, must be 0 (automatic) or 0 < near < far",
-                       (double)def->near, (double)def->far);
+                       "vplCubeMapDef.nearPlane and farPlane are %g and %g, must be 0 (automatic) or 0 < "
+                       "nearPlane < farPlane",
+                       (double)def->nearPlane, (double)def->farPlane);
     }
     return VPL_SUCCESS;
 }
@@ -141,8 +143,8 @@ static vplResult checkDef(const vplContext* context, const vplCubeMapDef* def)
 static void place(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def)
 {
     map->position = def->position;
-    map->far = def->far > 0 ? def->far : vplFarthestVertex(geometry, def->position);
-    map->near = def->near > 0 ? def->near : map->far * 0x1p-64f;
+    map->farPlane = def->farPlane > 0 ? def->farPlane : vplFarthestVertex(geometry, def->position);
+    map->nearPlane = def->nearPlane > 0 ? def->nearPlane : map->farPlane * 0x1p-64f;
 }
 
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
@@ -188,5 +190,5 @@ float vplCubeMap_Distance(const vplCubeMap* map, vplVec3 direction)
     if (!vplCube_Find(direction, map->size, &p)) {
         return INFINITY;
     }
-    return map->texels[((size_t)p.face * size + (size_t)p.row) * size + (size_t)p.column] * map->far;
+    return map->texels[((size_t)p.face * size + (size_t)p.row) * size + (size_t)p.column] * map->farPlane;
 }

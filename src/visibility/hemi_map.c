@@ -108,3 +108,11 @@ void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, fl
 {
     vplVisibilityKernels_Get(map->context->isa)->hemiMapFactor(map, surface, factorOut);
 }
+
+float vplHemiMap_Factor(const vplHemiMap* map, vplVec3 position, vplVec3 normal)
+{
+    const vplSurface surface = vplSurface_OfPoint(position, normal);
+    float factor[VPL_LANES];
+    vplHemiMap_FactorBlock(map, &surface, factor);
+    return factor[0];
+}

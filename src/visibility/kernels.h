@@ -3,9 +3,8 @@
 #ifndef VPL_VISIBILITY_KERNELS_H
 #define VPL_VISIBILITY_KERNELS_H
 
-#include <vpl/visibility.h>
-
 #include "base/isa.h"
+#include "visibility/blocks.h"
 
 struct vplBvh;
 struct vplCubeBounds;

@@ -179,3 +179,11 @@ void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface*
 {
     vplVisibilityKernels_Get(map->context->isa)->paraboloidFactor(map, surface, factorOut);
 }
+
+float vplParaboloidMap_Factor(const vplParaboloidMap* map, vplVec3 position, vplVec3 normal)
+{
+    const vplSurface surface = vplSurface_OfPoint(position, normal);
+    float factor[VPL_LANES];
+    vplParaboloidMap_FactorBlock(map, &surface, factor);
+    return factor[0];
+}

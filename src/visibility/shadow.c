@@ -58,7 +58,8 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
         shadow.def.pcfOffset = shadow.pcfTangent = 0;
     }
     if (shadow.def.biasStatic < 0) {
-        shadow.def.biasStatic = map->far * (shadow.texelTangent + shadow.pcfTangent) + shadow.def.pcfOffset;
+        shadow.def.biasStatic =
+            map->farPlane * (shadow.texelTangent + shadow.pcfTangent) + shadow.def.pcfOffset;
     }
     if (shadow.def.biasDynamic < 0) {
         shadow.def.biasDynamic = 5.6f * shadow.def.biasStatic;
@@ -91,16 +92,8 @@ void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, f
 
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal)
 {
-    vplSurface surface;
+    const vplSurface surface = vplSurface_OfPoint(position, normal);
     float factor[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        surface.px[l] = position.x;
-        surface.py[l] = position.y;
-        surface.pz[l] = position.z;
-        surface.nx[l] = normal.x;
-        surface.ny[l] = normal.y;
-        surface.nz[l] = normal.z;
-    }
     vplShadow_FactorBlock(shadow, &surface, factor);
     return factor[0];
 }

@@ -194,8 +194,8 @@ int VPL_KERNEL(vplTestBounds)(const vplShadow* shadow, const vplSurface* surface
     findCones(shadow, p, &q, &cones);
     turnNormals(p->face[0], surface, &axes);
     testPlanes(p, &cones, &axes, &region, lit);
-    const float nearest = region.least[VPL_LEAST_DISTANCE] * shadow->map->far;
-    const float farthest = -region.least[VPL_LEAST_NEGATED_DISTANCE] * shadow->map->far,
+    const float nearest = region.least[VPL_LEAST_DISTANCE] * shadow->map->farPlane;
+    const float farthest = -region.least[VPL_LEAST_NEGATED_DISTANCE] * shadow->map->farPlane,
                 samples = (float)shadow->def.pcfSamples;
     for (int l = 0; l < VPL_LANES; l++) {
         const int32_t dark = p->limit[l] > farthest, free = p->limit[l] <= nearest;

@@ -71,7 +71,7 @@ static void countShadowed(const vplShadow* shadow, const vplShadowPoints* restri
     const vplCubeMap* map = shadow->map;
     const float* restrict texels = map->texels;
     const int32_t size = map->size;
-    const float far = map->far;
+    const float far = map->farPlane;
     for (int l = 0; l < VPL_LANES; l++) {
         shadowed[l] = 0;
     }
@@ -129,7 +129,7 @@ static inline __attribute__((always_inline)) float countPoint(const vplShadow* s
 {
     const vplCubeMap* map = shadow->map;
     const int32_t size = map->size, samples = shadow->def.pcfSamples, face = p->face[lane];
-    const float far = map->far, limit = p->limit[lane], radius = p->radius[lane];
+    const float far = map->farPlane, limit = p->limit[lane], radius = p->radius[lane];
     // In the axes of the face where that is known.
     vplInFace at = {p->x[lane], p->y[lane], p->z[lane]};
     vplInFace alongU = {axis[0][lane], axis[1][lane], axis[2][lane]};

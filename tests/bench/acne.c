@@ -7,7 +7,7 @@
 //   error  mean |s - ray| over the same points; with 16 samples it includes the soft edge itself
 #include "bench.h"
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <math.h>
 #include <stdio.h>

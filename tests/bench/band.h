@@ -5,6 +5,7 @@
 #define VPL_BAND_H
 
 #include "math/scalar.h"
+#include "visibility/blocks.h"
 #include "visibility/hemi_map.h"
 #include "visibility/paraboloid_map.h"
 

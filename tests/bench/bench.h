@@ -11,7 +11,7 @@
 
 #include "../plain_options.h"
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 #include "cli/bench/measure.h"
 #include "reference/path_trace.h"
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <math.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 
 #ifdef HAVE_EMBREE
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <embree3/rtcore.h>
 #include <math.h>

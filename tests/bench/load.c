@@ -3,7 +3,7 @@
 // fifteen.
 #include "cli/bench/measure.h"
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <stdio.h>
 #include <sys/stat.h>

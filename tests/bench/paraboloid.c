@@ -5,6 +5,8 @@
 #include "band.h"
 #include "bench.h"
 
+#include "visibility/blocks.h"
+
 #include <string.h>
 
 enum { MOST = 32, RUNS = 7, POINTS_X = 320, POINTS_Y = 180, POINTS = POINTS_X * POINTS_Y, RAYS_OF = 16 };

@@ -3,7 +3,7 @@
 // medians of five, and numbers of rays. `patches SCENE [COUNT ...]`
 #include "cli/bench/measure.h"
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #include "cli/bench/measure.h"
 #include "reference/path_trace.h"
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <limits.h>
 #include <stdio.h>

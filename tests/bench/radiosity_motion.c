@@ -58,7 +58,7 @@ static vplImage* renderFrame(vplHistory* history, int frame, int patches, bool i
     return image;
 }
 
-static void time(vplContext* context, int patches)
+static void timeFrames(vplContext* context, int patches)
 {
     vplHistory* history;
     double total[FRAMES], light[FRAMES], solve[FRAMES];
@@ -111,8 +111,8 @@ int main(int count, char** words)
     openScene(words[1], 0, VPL_ISA_AUTO, &context, &scene);
     moveLight();
     puts("patches   sides    first    frame    fps    light    solve   (ms)");
-    time(context, 784);
-    time(context, 3000);
+    timeFrames(context, 784);
+    timeFrames(context, 3000);
     puts("patches solver        before     jump        1        2        3        4        5");
     lag(context, 784, VPL_SOLVER_GAUSS_SEIDEL);
     lag(context, 784, VPL_SOLVER_JACOBI);

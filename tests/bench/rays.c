@@ -45,7 +45,7 @@ static void makeCameraRays(Bench* b)
         float sx = (float)((2 * (x + 0.5) / SIDE - 1) / v.scaleX);
         float sy = (float)((1 - 2 * (y + 0.5) / SIDE) / v.scaleY);
         vplVec3 d = vplAdd(v.forward, vplAdd(vplScale(sx, v.right), vplScale(sy, v.up)));
-        b->rays[i] = (vplRay){vplAdd(v.eye, vplScale((float)v.near, d)), d, {0, 0}};
+        b->rays[i] = (vplRay){vplAdd(v.eye, vplScale((float)v.nearPlane, d)), d, {0, 0}};
     }
     b->rayCount = MOST_RAYS;
 }

@@ -6,6 +6,9 @@
 #include "bench.h"
 #include "rsm_band.h"
 
+#include "lights/kernels.h"
+#include "visibility/blocks.h"
+
 #include <string.h>
 
 enum { PARTICLES = 100000, RUNS = 5, SIDE = 96, SHOWN = 300, WIDTH = 1920, HEIGHT = 1080 };

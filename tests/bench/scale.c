@@ -4,7 +4,7 @@
 // G-buffer and of Keller's method. The sun lights it.
 #include "cli/bench/measure.h"
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <math.h>
 #include <stdio.h>

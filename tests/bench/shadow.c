@@ -5,10 +5,11 @@
 // time.
 #include "bench.h"
 
+#include "visibility/blocks.h"
 #include "visibility/cube_bounds.h"
 #include "visibility/kernels.h"
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #ifndef VPL_TESTS_FUZZ_FUZZ_H
 #define VPL_TESTS_FUZZ_FUZZ_H
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -177,8 +177,8 @@ static void addCamera(Bytes* b, FuzzLog* log, vplScene* scene, double size, vplV
     def.eye = (vplVec3){middle.x + away.x, middle.y + away.y, middle.z + (float)size};
     def.target = (vplVec3){middle.x + shift.x, middle.y + shift.y, middle.z + shift.z};
     def.fovY = pick(b, 4) == 3 ? numberIn(b, 1e-4, 3.14) : 0.8;
-    def.near = size * (pick(b, 4) == 3 ? power(b, -9, 0) : 0.01);
-    def.far = fmax(def.near * 1.001, size * (pick(b, 4) == 3 ? power(b, -2, 6) : 10));
+    def.nearPlane = size * (pick(b, 4) == 3 ? power(b, -9, 0) : 0.01);
+    def.farPlane = fmax(def.nearPlane * 1.001, size * (pick(b, 4) == 3 ? power(b, -2, 6) : 10));
     if (vplScene_AddCamera(scene, &def, NULL) != VPL_SUCCESS) {
         REQUIRE(log->errors == 1);
         const vplCameraDef usual = vplDefaultCameraDef();

@@ -58,8 +58,8 @@ vplResult buildFloor(vplContext* context, const FloorScene* f, vplScene** sceneO
     camera.target = (vplVec3){0, 0, 0};
     camera.up = (vplVec3){0, 0, -1};
     camera.fovY = f->fov;
-    camera.near = f->nearPlane;
-    camera.far = 1000 * f->nearPlane;
+    camera.nearPlane = f->nearPlane;
+    camera.farPlane = 1000 * f->nearPlane;
     const double middle[3] = {0, 0, 0}, down[2] = {-90, 0}, size[3] = {f->size, f->size, 1};
     TRY(vplScene_Create(context, sceneOut));
     TRY(vplScene_AddCamera(*sceneOut, &camera, NULL));
@@ -129,8 +129,8 @@ vplResult buildRoomAt(vplContext* context, const RoomScene* room, vplScene** sce
     camera.eye = (vplVec3){(float)eye[0], (float)eye[1], (float)eye[2]};
     camera.target = (vplVec3){(float)target[0], (float)target[1], (float)target[2]};
     camera.fovY = 70 * VPL_PI / 180;
-    camera.far = 20 * room->scale;
-    camera.near = camera.far / room->farOverNear;
+    camera.farPlane = 20 * room->scale;
+    camera.nearPlane = camera.farPlane / room->farOverNear;
     TRY(vplScene_Create(context, sceneOut));
     TRY(vplScene_AddCamera(*sceneOut, &camera, NULL));
     TRY(addMaterial(*sceneOut, REFLECTANCE, 0));
@@ -192,7 +192,7 @@ vplResult buildFurnace(vplContext* context, double rho, vplScene** sceneOut)
 {
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = (vplVec3){-0.3f, 0.2f, 0.9f};
-    camera.near = 0.01;
+    camera.nearPlane = 0.01;
     camera.fovY = 70 * VPL_PI / 180;
     TRY(vplScene_Create(context, sceneOut));
     TRY(vplScene_AddCamera(*sceneOut, &camera, NULL));

@@ -30,7 +30,7 @@ static void addCamera(vplScene* scene)
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = (vplVec3){0, 2.5f, 8.5f};
     camera.target = (vplVec3){0, 2.5f, 0};
-    camera.far = 50;
+    camera.farPlane = 50;
     vplScene_AddCamera(scene, &camera, NULL);
 }
 

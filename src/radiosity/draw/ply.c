@@ -2,6 +2,8 @@
 // Writes a lit mesh with baked vertex colours.
 // Based on: Turk, The PLY Polygon File Format, 1994. Numbers are written as they are in memory, so the
 // machine must be little-endian.
+#include <vpl/imagetools.h>
+
 #include "base/arena.h"
 #include "math/vec.h"
 #include "radiosity/sides/side.h"

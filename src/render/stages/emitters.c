@@ -30,7 +30,7 @@ static vplShadowDef shadowDefOf(const vplPlan* plan, const vplCubeMap* map)
     def.biasStatic = o->bias;
     def.biasDynamic = o->biasSlope;
     def.pcfSamples = o->pcfSamples;
-    def.pcfOffset = reaching ? map->far / 128 : o->pcfOffset;
+    def.pcfOffset = reaching ? map->farPlane / 128 : o->pcfOffset;
     return def;
 }
 

@@ -3,6 +3,8 @@
 #ifndef VPL_RENDER_STAGES_RESULTS_H
 #define VPL_RENDER_STAGES_RESULTS_H
 
+#include <vpl/radiosity.h>
+
 #include "render/stage.h"
 
 // VPL_STAGE_NEAR_DISTANCE has a float: the metres within which surfaces see a fifth of what they see.

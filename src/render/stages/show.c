@@ -29,7 +29,7 @@ vplResult vplShowCubeMap(const vplRun* run, vplImage** imageOut)
                          y = (size_t)rows[face] * size + i / size;
             float* pixel = image->pixels + 3 * (y * (size_t)image->width + x);
             const float stored = map->texels[face * size * size + i];
-            pixel[0] = pixel[1] = pixel[2] = isfinite(stored) ? stored * map->far : 0;
+            pixel[0] = pixel[1] = pixel[2] = isfinite(stored) ? stored * map->farPlane : 0;
         }
     }
     *imageOut = image;
@@ -62,7 +62,7 @@ vplResult vplShowClusterMap(const vplRun* run, vplImage** imageOut)
 static bool isHidden(const vplView* view, const vplGeometry* geometry, vplVec3 position)
 {
     const vplVec3 way = vplSub(position, view->eye);
-    const float begin = (float)view->near / vplDot(view->forward, way); // at the near plane
+    const float begin = (float)view->nearPlane / vplDot(view->forward, way); // at the near plane
     const vplRay ray = {vplAdd(view->eye, vplScale(begin, way)), vplScale(1 - begin, way), {0, 0}};
     return vplGeometry_IsOccluded(geometry, &ray, 0.9999f);
 }

@@ -140,7 +140,7 @@ static void makeDirect(Gl* gl)
     float block[3][4] = {{0}};
     const vplVec3 p = room->emitter->position;
     const vplRgb i = room->emitter->intensity;
-    const float place[4] = {p.x, p.y, p.z, room->map->far};
+    const float place[4] = {p.x, p.y, p.z, room->map->farPlane};
     const float light[4] = {i.r / PARTICLES, i.g / PARTICLES, i.b / PARTICLES, 0};
     memcpy(block[0], place, sizeof place);
     memcpy(block[1], light, sizeof light);
@@ -164,12 +164,12 @@ static void setRow(float m[16], int row, double scale, vplVec3 axis, vplVec3 fro
 static void makeMatrices(Gl* gl)
 {
     const vplView* v = &gl->room->view;
-    const double depth = v->far / (v->far - v->near);
+    const double depth = v->farPlane / (v->farPlane - v->nearPlane);
     setRow(gl->toClip, 0, v->scaleX, v->right, v->eye, 0);
     // The picture is upside down: row 0 is the top, as in libvpl, so that pixel centres on edges fall into
     // the same triangles.
     setRow(gl->toClip, 1, -v->scaleY, v->up, v->eye, 0);
-    setRow(gl->toClip, 2, depth, v->forward, v->eye, -depth * v->near);
+    setRow(gl->toClip, 2, depth, v->forward, v->eye, -depth * v->nearPlane);
     setRow(gl->toClip, 3, 1, v->forward, v->eye, 0);
     const vplCubeMap* map = gl->room->map;
     for (int face = 0; face < 6; face++) {
@@ -177,7 +177,7 @@ static void makeMatrices(Gl* gl)
         float* m = gl->faceToClip[face];
         setRow(m, 0, 1, frame.right, map->position, 0);
         setRow(m, 1, -1, frame.up, map->position, 0); // row 0 of a face is its top in OpenGL
-        setRow(m, 2, 1, frame.forward, map->position, -(double)map->near);
+        setRow(m, 2, 1, frame.forward, map->position, -(double)map->nearPlane);
         setRow(m, 3, 1, frame.forward, map->position, 0);
     }
 }

@@ -3,7 +3,7 @@
 #ifndef VPL_BENCH_PEERS_H
 #define VPL_BENCH_PEERS_H
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 enum {
     MOST_LIGHTS = 1998,

@@ -52,7 +52,7 @@ void vplCubeWay(Room* room, const Row* row)
     room->draws += room->map->stats.drawCalls;
     vplShadowDef shadowDef = vplDefaultShadowDef();
     shadowDef.biasRule = VPL_BIAS_PAIR; // the bias of the document, as vplRender uses for documented lighting
-    shadowDef.pcfOffset = room->map->far / 128; // and its radius
+    shadowDef.pcfOffset = room->map->farPlane / 128; // and its radius
     shadowDef.pcfSamples = PCF_SAMPLES;
     demand(vplShadow_Create(room->map, &shadowDef, &room->shadow) == VPL_SUCCESS, "no shadow");
 }

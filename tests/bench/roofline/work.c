@@ -4,6 +4,7 @@
 
 #include "cli/bench/cover.h"
 #include "geometry/bvh.h"
+#include "shading/light_block.h"
 #include "shading/shading.h"
 
 #include <math.h>

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// A context from the inside: the memory that it holds, the machine as it uses it, and files that appear whole.
+#ifndef VPL_MACHINE_H
+#define VPL_MACHINE_H
+
+#include <vpl/base.h>
+
+VPL_HEADER_BEGIN
+
+// "auto", "scalar", "sse2", "avx2" or "avx512".
+const char* vplIsa_GetName(vplIsa isa);
+
+// Bytes held now, and the most held at once since creation or the last reset.
+size_t vplContext_GetBytes(const vplContext* context);
+size_t vplContext_GetPeakBytes(const vplContext* context);
+void vplContext_ResetPeakBytes(vplContext* context);
+
+// The instruction set in use (never VPL_ISA_AUTO) and the number of workers (never 0).
+vplIsa vplContext_GetIsa(const vplContext* context);
+int vplContext_GetWorkerCount(const vplContext* context);
+
+// Writes a whole file. It writes to a temporary file beside the target, checks it and renames it, so that the
+// target is either unchanged or complete. Devices and pipes are written directly. VPL_FILE_ERROR,
+// VPL_OUT_OF_MEMORY.
+vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size);
+
+VPL_HEADER_END
+
+#endif
