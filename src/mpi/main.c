@@ -82,10 +82,15 @@ static int check(const Arguments* a)
         complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());
         return EXIT_USAGE;
     }
-    if (a->frames[1] >= 0 && (isStdout(a->output) || a->render.sequence.coherence == VPL_COHERENCE_ON)) {
-        complain(
-            "frames that ranks share have files of their own and do not depend on each other: no -o - and "
-            "no --coherence on");
+    if (a->frames[1] >= 0 && isStdout(a->output)) {
+        complain("-o %s: standard output takes one picture", a->output);
+        return EXIT_USAGE;
+    }
+    char reason[64];
+    if (a->frames[1] >= 0 && a->render.sequence.coherence == VPL_COHERENCE_ON &&
+        vplRenderOptions_IsUsed(&a->render, "coherence", reason, sizeof reason)) {
+        complain("frames that ranks share cannot depend on the one before: --coherence must be off with this "
+                 "--method");
         return EXIT_USAGE;
     }
     const bool good = (a->frames[1] >= 0 || checkOutput(a->output)) &&
