@@ -31,6 +31,7 @@ typedef struct Desk {
     int next, left, taken, todo; // the next unit; units not handed out; finished in this run; of this run
     int* given;                  // units that each rank has
     bool* gone;                  // ranks that ended
+    bool taking; // a result is being taken: what that allocates asks, too, and must not take another
     Incoming* incoming;
     // Other ranks
     int queue[AHEAD], queued;
@@ -88,7 +89,9 @@ static void stop(Desk* d, int code, double seconds)
 
 static void take(Desk* d, int unit, const uint8_t* bytes, size_t size)
 {
+    d->taking = true;
     const int code = d->work->take(d->work->user, unit, bytes, size);
+    d->taking = false;
     if (code != EXIT_DONE) {
         stop(d, code, 0);
         return;
@@ -230,6 +233,9 @@ bool attendWork(void* user, double fraction)
     Desk* d = ((Work*)user)->desk;
     if (d == NULL) { // plans ask, too
         return askInterrupts(NULL, fraction);
+    }
+    if (d->taking) {
+        return true;
     }
     if (d->ranks->rank == 0) {
         serve(d);

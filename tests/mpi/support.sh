@@ -10,14 +10,14 @@ passed=0
 failed=0
 
 check() {
-    name=$1
+    checked=$1
     shift
     if "$@" >"$scratch/log" 2>&1; then
         passed=$((passed + 1))
-        echo "ok $name"
+        echo "ok $checked"
     else
         failed=$((failed + 1))
-        echo "not ok $name"
+        echo "not ok $checked"
         tail -n 20 "$scratch/log"
     fi
 }
