@@ -108,3 +108,30 @@ TEST(DamagedPiecesAreRefused, 1)
     vplRenderer_Destroy(r);
     vplScene_Destroy(scene);
 }
+
+TEST(PiecesOfAnotherPictureDoNotFitTheRenderer, 1)
+{
+    vplRenderOptions o = optionsOf("--method direct --antialias 1");
+    vplScene* scene;
+    vplRenderer *r, *other;
+    vplAssembly* a;
+    vplPieceGrid grid;
+    uint8_t* bytes;
+    size_t size = 0, used = 0;
+    assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderOptions_Set(&o, "seed", "9"), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Create(scene, &o, &other), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Divide(r, 3, &grid), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_Create(context, &a), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_CheckRenderer(a, other), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_MakePiece(r, &grid, 0, &bytes, &size), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_Add(a, bytes, size, "piece", &used), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_CheckRenderer(a, r), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_CheckRenderer(a, other), VPL_INVALID_ARGUMENT);
+    vplBytes_Free(context, bytes);
+    vplAssembly_Destroy(a);
+    vplRenderer_Destroy(r);
+    vplRenderer_Destroy(other);
+    vplScene_Destroy(scene);
+}

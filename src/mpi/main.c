@@ -158,11 +158,11 @@ int main(int count, char** words)
 {
     Ranks ranks = {.rank = 0};
     int level;
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN); // a file that must not grow fails in write, and is reported
     MPI_Init_thread(&count, &words, MPI_THREAD_FUNNELED, &level);
     MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks.count);
-    signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN); // a file that must not grow fails in write, and is reported
     snprintf(ranks.speaker, sizeof ranks.speaker, ranks.rank > 0 ? "vpl-mpi: rank %d" : "vpl-mpi",
              ranks.rank);
     setSpeaker(ranks.rank == 0 ? ranks.speaker : NULL);
