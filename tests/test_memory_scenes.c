@@ -3,6 +3,9 @@
 #include "base/file.h"
 #include "failing.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 // The scene's hash at a small size, by direct light; destroys the scene.
 static uint64_t hashOf(vplScene* scene)
 {
