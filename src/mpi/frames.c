@@ -24,8 +24,7 @@ typedef struct Frames {
 
 // What comes before the bytes of a frame's file.
 typedef struct FrameHeader {
-    float exposure;
-    uint32_t unused;
+    double exposure;
     uint64_t hash;
 } FrameHeader;
 
@@ -43,7 +42,7 @@ static vplResult encode(Frames* f, vplImage* image, const char* path, uint8_t** 
     if (preparePicture(f->ranks->arguments, image, path, &f->display) != EXIT_DONE) {
         return VPL_OUT_OF_MEMORY;
     }
-    header.exposure = f->display.exposure;
+    header.exposure = (double)f->display.exposure;
     TRY(vplImage_Encode(image, path, &f->display, &bytes, &size));
     *sizeOut = sizeof header + size;
     *bytesOut = malloc(*sizeOut);
@@ -75,11 +74,11 @@ static int takeFrame(void* user, int index, const uint8_t* bytes, size_t size)
     char path[PATH_MAX], line[128];
     nameFrame(f, index, path);
     memcpy(&header, bytes, sizeof header);
-    f->display.exposure = index == 0 ? header.exposure : f->display.exposure;
+    f->display.exposure = index == 0 ? (float)header.exposure : f->display.exposure;
     const int code =
         exitCode(vplWriteFile(f->context, path, bytes + sizeof header, size - sizeof header), false);
     const int length = snprintf(line, sizeof line, "%d %a %016llx\n", f->ranks->arguments->frames[0] + index,
-                                (double)header.exposure, (unsigned long long)header.hash);
+                                header.exposure, (unsigned long long)header.hash);
     if (code != EXIT_DONE || !appendJournal(&f->journal, line, (size_t)length)) {
         return EXIT_COULD_NOT;
     }

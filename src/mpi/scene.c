@@ -15,17 +15,20 @@ static void noteFile(void* user, const vplMemoryFile* file)
 {
     Files* all = user;
     vplMemoryFile* grown = realloc(all->files, ((size_t)all->count + 1) * sizeof *grown);
-    char* path = strdup(file->path);
-    void* bytes = malloc(file->size + 1);
-    all->files = grown != NULL ? grown : all->files;
-    if (grown == NULL || path == NULL || bytes == NULL) {
-        free(path);
-        free(bytes);
-        all->failed = true;
+    all->failed = all->failed || grown == NULL;
+    if (grown == NULL) {
         return;
     }
-    memcpy(bytes, file->bytes, file->size);
-    all->files[all->count++] = (vplMemoryFile){path, bytes, file->size};
+    all->files = grown;
+    grown += all->count++;
+    void* bytes = malloc(file->size + 1);
+    grown->path = strdup(file->path);
+    grown->bytes = bytes;
+    grown->size = bytes != NULL ? file->size : 0;
+    all->failed = all->failed || grown->path == NULL || bytes == NULL;
+    if (bytes != NULL) {
+        memcpy(bytes, file->bytes, file->size);
+    }
 }
 
 static void freeFiles(Files* all)

@@ -153,6 +153,9 @@ vplResult vplRenderer_MakePiece(vplRenderer* r, const vplPieceGrid* grid, int in
     run->endRow = place.endRow;
     r->runner.stepFrom = r->runner.reported = 0;
     r->runner.stepTo = 1;
+    if (r->plan->options.method == VPL_METHOD_RADIOSITY) {
+        vplRunner_Forget(&r->runner); // or its sweeps would go on from the solution of the last piece
+    }
     vplResult result = drawPiece(r, images);
     run->firstRow = run->endRow = 0;
     result = result == VPL_SUCCESS ? writePiece(run->context, &h, images, bytesOut) : result;
