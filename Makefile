@@ -56,7 +56,7 @@ MOVES      := $(shell $(CC) -mavx2 -mmove-max=256 -mstore-max=256 -x c -c /dev/n
 ISA_avx2   := -mavx2 $(MOVES)
 ISA_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 
-LIB_SOURCES    := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
+LIB_SOURCES    := $(filter-out src/cli/% src/mpi/%,$(wildcard src/*/*.c src/*/*/*.c))
 KERNEL_SOURCES := $(filter %_kernel.c,$(LIB_SOURCES))
 PLAIN_SOURCES  := $(filter-out %_kernel.c,$(LIB_SOURCES))
 CLI_SOURCES    := $(wildcard src/cli/*.c src/cli/*/*.c)
@@ -74,7 +74,7 @@ SONAME         := libvpl.so.$(shell echo $(VERSION) | sed -e 's/^\(0\.[0-9]*\).*
 SHARED         := libvpl.so.$(VERSION)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-.PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install uninstall clean format fuzz soak faults coverage
+.PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install uninstall clean format fuzz soak faults coverage test-mpi
 
 # Headers that programs need, each with the Debian package that has it.
 NEEDS := jansson.h=libjansson-dev stb_image.h=libstb-dev
@@ -179,6 +179,12 @@ faults: test-programs
 	VPL_EVERY_ALLOCATION=1 $(BUILD)/vpl-tests FailedAllocationsOfEveryMethod
 	tests/signals.sh $(BUILD)/vpl 300
 
+## make test-mpi    vpl-mpi: installs OpenMPI and MPICH, builds it with both, tests it with 1 to 8 ranks
+test-mpi: deps
+	@.ci/install-deps libopenmpi-dev openmpi-bin libmpich-dev mpich
+	@$(MAKE) --no-print-directory $(JOBS) programs $(BUILD)/vpl-mpi.openmpi $(BUILD)/vpl-mpi.mpich
+	@tests/mpi/run.sh $(BUILD)
+
 ## make install     libraries, headers, program, man page, libvpl.pc and a CMake package under PREFIX (/usr/local)
 LIBDIR  ?= $(PREFIX)/lib
 COMPLETIONS := $(PREFIX)/share/bash-completion/completions/vpl $(PREFIX)/share/zsh/site-functions/_vpl \
@@ -235,6 +241,21 @@ $(BUILD)/$(SHARED): $(LIB_OBJECTS)
 $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+# vpl-mpi, by the compiler of an MPI: make build/vpl-mpi MPICC=mpicc.mpich, or by name: build/vpl-mpi.openmpi.
+MPICC       ?= mpicc
+MPI_SOURCES := $(wildcard src/mpi/*.c)
+MPI_OTHERS  := $(filter-out %/cli/main.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
+define BUILD_MPI
+	@command -v $(1) >/dev/null || { echo "$@ needs an MPI: there is no $(1); make test-mpi installs two" >&2; exit 1; }
+	@mkdir -p $(@D)
+	@echo "  MPI $@"
+	$(Q)OMPI_CC="$(CC)" MPICH_CC="$(CC)" $(1) $(filter-out -MMD -MP,$(ALL_CFLAGS)) -Wconversion -o $@ $(MPI_SOURCES) $(MPI_OTHERS) $(LDLIBS)
+endef
+$(BUILD)/vpl-mpi: $(MPI_SOURCES) src/mpi/ranks.h $(MPI_OTHERS)
+	$(call BUILD_MPI,$(MPICC))
+$(BUILD)/vpl-mpi.%: $(MPI_SOURCES) src/mpi/ranks.h $(MPI_OTHERS)
+	$(call BUILD_MPI,mpicc.$*)
 
 # The program writes the options of its man page.
 $(BUILD)/vpl.1: src/cli/vpl.1.in $(BUILD)/vpl

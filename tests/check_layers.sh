@@ -5,7 +5,7 @@
 cd "${1:-.}" || exit 2
 awk '
 BEGIN {
-    split("base math image scene geometry raster visibility lights shading radiosity reference render cli", names, " ")
+    split("base math image scene geometry raster visibility lights shading radiosity reference render cli mpi", names, " ")
     allowed["base"] = "base"
     allowed["math"] = "math base"
     allowed["image"] = "image base math"
@@ -19,6 +19,7 @@ BEGIN {
     allowed["reference"] = "reference base math image scene geometry"
     allowed["render"] = "render base math image scene geometry raster visibility lights shading radiosity reference"
     allowed["cli"] = "cli public"
+    allowed["mpi"] = "mpi cli public"
     layer["vecmath"] = "math"
     layer["formulas"] = "visibility"
     layer["machine"] = layer["choices"] = "base"
@@ -42,7 +43,7 @@ BEGIN {
     } else if (match($0, /^#include <vpl\/[a-z]+\.h>/)) {
         target = substr($0, 15, RLENGTH - 17)
         target = target in layer ? layer[target] : target
-        if (folder == "cli") { target = "public" }
+        if (folder == "cli" || folder == "mpi") { target = "public" }
     } else {
         next
     }

@@ -57,7 +57,9 @@ options_of() {
 
 commands() {
     known=$("$vpl" help | sed -n 's/^  vpl \([a-z][a-z]*\) .*/\1/p' | sort -u)
-    all=$(for command in $known; do options_of "$command"; done | sort -u)
+    # vpl-mpi and mpirun, which tests/mpi/run.sh runs, have options of their own.
+    mpi=$(sed -n '/^static const char USAGE/,/;$/p' src/mpi/main.c | grep -o -- '--[a-z][a-z0-9-]*')
+    all=$({ for command in $known; do options_of "$command"; done; printf '%s\n' $mpi --bind-to; } | sort -u)
     code "$readme" | sed -n 's/^\(build\/\)*vpl  *//p; s/^\(--[a-z]\)/\1/p' | while read -r command rest; do
         options=$all
         case $command in

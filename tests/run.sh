@@ -50,6 +50,11 @@ for replay in "$build"/fuzz/*_replay; do
     kind=$(basename "$replay" _replay)
     one "corpus of $kind" "$replay" "tests/fuzz/corpus/$kind"
 done
+if [ -x "$build/vpl-mpi.openmpi" ] && [ -x "$build/vpl-mpi.mpich" ]; then
+    echo "vpl-mpi: make test-mpi tests it"
+else
+    echo "skipped: vpl-mpi needs two MPIs; make test-mpi installs them and tests it"
+fi
 one "random renders" "$build/soak" 300
 
 echo "$passed passed, $failed failed"

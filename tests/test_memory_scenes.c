@@ -3,6 +3,9 @@
 #include "base/file.h"
 #include "failing.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 // The scene's hash at a small size, by direct light; destroys the scene.
 static uint64_t hashOf(vplScene* scene)
 {
@@ -122,4 +125,44 @@ static vplResult loadMesh(Attempt* a)
 TEST_ALONE(ScenesInMemorySurviveEveryFailedAllocation)
 {
     failSomeAllocations("scene in memory", loadMesh, 1);
+}
+
+// ---- files that are noted at one context and given to another
+
+enum { MOST_NOTED = 16 };
+
+typedef struct Noted {
+    vplMemoryFile files[MOST_NOTED];
+    int count;
+} Noted;
+
+static void note(void* user, const vplMemoryFile* file)
+{
+    Noted* n = user;
+    void* bytes = malloc(file->size + 1);
+    assert_true(n->count < MOST_NOTED && bytes != NULL);
+    memcpy(bytes, file->bytes, file->size);
+    n->files[n->count++] = (vplMemoryFile){strdup(file->path), bytes, file->size};
+}
+
+TEST(NotedFilesMakeTheSceneWithoutTheDisk, 1)
+{
+    Noted noted = {.count = 0}, none = {.count = 0};
+    vplScene *scene, *again;
+    vplContext_SetFileObserver(context, note, &noted);
+    assert_int_equal(vplScene_Load(context, "examples/scenes/textured-room.json", &scene), VPL_SUCCESS);
+    assert_true(noted.count >= 2); // the scene and at least one texture
+    vplContext_SetFileObserver(context, note, &none);
+    vplContext_SetFiles(context, noted.files, noted.count);
+    assert_int_equal(vplScene_Load(context, "examples/scenes/textured-room.json", &again), VPL_SUCCESS);
+    vplContext_SetFiles(context, NULL, 0);
+    vplContext_SetFileObserver(context, NULL, NULL);
+    assert_int_equal(none.count, 0); // nothing was read from disk
+    assert_true(vplScene_GetHash(scene) == vplScene_GetHash(again));
+    for (int i = 0; i < noted.count; i++) {
+        free((char*)noted.files[i].path);
+        free((void*)noted.files[i].bytes);
+    }
+    vplScene_Destroy(scene);
+    vplScene_Destroy(again);
 }

@@ -21,17 +21,21 @@ static uint64_t hashOfWhole(const vplScene* scene, const vplRenderOptions* o)
     return stats.imageHash;
 }
 
-// Renders the pieces from the last to the first, each by a renderer of its own, as on another machine.
-static uint64_t hashOfPieces(vplContext* context, const vplScene* scene, const vplRenderOptions* o, int bands)
+// Renders the pieces from the last to the first, each by a renderer of its own, as on another machine, or all by one.
+static uint64_t hashOfPieces(vplContext* context, const vplScene* scene, const vplRenderOptions* o, int bands,
+                             bool one)
 {
+    vplRenderer* r = NULL;
     vplAssembly* a;
     vplPieceGrid grid = {.count = INT32_MAX};
     assert_int_equal(vplAssembly_Create(context, &a), VPL_SUCCESS);
     for (int left = 1; left > 0;) {
-        vplRenderer* r;
         uint8_t* bytes;
         size_t size = 0, used;
-        assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+        if (r == NULL || !one) {
+            vplRenderer_Destroy(r);
+            assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+        }
         assert_int_equal(vplRenderer_Divide(r, bands, &grid), VPL_SUCCESS);
         const vplPieceGrid seen = vplAssembly_GetGrid(a);
         const int index = (seen.count > 0 ? vplAssembly_CountMissing(a) : grid.count) - 1;
@@ -39,9 +43,9 @@ static uint64_t hashOfPieces(vplContext* context, const vplScene* scene, const v
         assert_int_equal(vplAssembly_Add(a, bytes, size, "piece", &used), VPL_SUCCESS);
         assert_int_equal(used, size);
         vplBytes_Free(context, bytes);
-        vplRenderer_Destroy(r);
         left = vplAssembly_CountMissing(a);
     }
+    vplRenderer_Destroy(r);
     vplImage* image;
     assert_int_equal(vplAssembly_GetImage(a, &image), VPL_SUCCESS);
     const uint64_t hash = vplImage_Hash(image);
@@ -68,11 +72,13 @@ TEST(PiecesHaveTheBitsOfOneRender, 2)
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         const vplRenderOptions o = optionsOf(CASES[i]);
         const uint64_t whole = hashOfWhole(scene, &o);
-        for (int bands = 1; bands <= 3; bands += 1 + (bands == 1)) {
-            const uint64_t pieces = hashOfPieces(context, scene, &o, bands);
+        for (int k = 0; k < 3; k++) {
+            const int bands = k > 0 ? 3 : 1;
+            const uint64_t pieces = hashOfPieces(context, scene, &o, bands, k == 2);
             if (pieces != whole) {
-                fail_msg("%s in %d bands: %016llx, must be %016llx", CASES[i], bands,
-                         (unsigned long long)pieces, (unsigned long long)whole);
+                fail_msg("%s in %d bands%s: %016llx, must be %016llx", CASES[i], bands,
+                         k == 2 ? " by one renderer" : "", (unsigned long long)pieces,
+                         (unsigned long long)whole);
             }
         }
     }
@@ -106,5 +112,32 @@ TEST(DamagedPiecesAreRefused, 1)
     vplBytes_Free(context, bytes);
     vplAssembly_Destroy(a);
     vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
+
+TEST(PiecesOfAnotherPictureDoNotFitTheRenderer, 1)
+{
+    vplRenderOptions o = optionsOf("--method direct --antialias 1");
+    vplScene* scene;
+    vplRenderer *r, *other;
+    vplAssembly* a;
+    vplPieceGrid grid;
+    uint8_t* bytes;
+    size_t size = 0, used = 0;
+    assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderOptions_Set(&o, "seed", "9"), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Create(scene, &o, &other), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Divide(r, 3, &grid), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_Create(context, &a), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_CheckRenderer(a, other), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_MakePiece(r, &grid, 0, &bytes, &size), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_Add(a, bytes, size, "piece", &used), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_CheckRenderer(a, r), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_CheckRenderer(a, other), VPL_INVALID_ARGUMENT);
+    vplBytes_Free(context, bytes);
+    vplAssembly_Destroy(a);
+    vplRenderer_Destroy(r);
+    vplRenderer_Destroy(other);
     vplScene_Destroy(scene);
 }

@@ -47,6 +47,10 @@ vplResult vplAssembly_Add(vplAssembly* assembly, const uint8_t* bytes, size_t si
 // The division; count is 0 before the first piece.
 vplPieceGrid vplAssembly_GetGrid(const vplAssembly* assembly);
 
+// Checks that the pieces of an assembly are of the renderer's picture, so that an old file of pieces is not continued with
+// another scene. VPL_INVALID_ARGUMENT where scene, camera or options differ; an assembly without pieces fits.
+vplResult vplAssembly_CheckRenderer(const vplAssembly* assembly, const vplRenderer* renderer);
+
 bool vplAssembly_Has(const vplAssembly* assembly, int index);
 
 // Returns how many pieces are missing.

@@ -30,9 +30,11 @@ struct vplContext {
     atomic_bool cancelled;    // the loop of tasks under way
     uint64_t stamps;          // see vplNextStamp
     struct vplSpeeds* speeds; // see vplContext_SetSpeeds; NULL: as usual
-    // Files in memory, which are read instead of those on disk while a scene is read from memory.
+    // Files in memory, which are read instead of those on disk: see vplContext_SetFiles.
     const vplMemoryFile* files;
     int fileCount;
+    vplFileFcn* fileObserver; // see vplContext_SetFileObserver
+    void* fileUser;
 };
 
 // Returns a different number each time. Identifies an object, or one state of it.

@@ -53,6 +53,18 @@ static vplResult readAll(vplContext* context, const char* path, int fd, vplByteB
     }
 }
 
+void vplContext_SetFiles(vplContext* context, const vplMemoryFile* files, int count)
+{
+    context->files = files;
+    context->fileCount = files != NULL ? count : 0;
+}
+
+void vplContext_SetFileObserver(vplContext* context, vplFileFcn* fcn, void* user)
+{
+    context->fileObserver = fcn;
+    context->fileUser = user;
+}
+
 static const vplMemoryFile* findInMemory(const vplContext* context, const char* path)
 {
     for (int i = 0; i < context->fileCount; i++) {
@@ -105,6 +117,9 @@ vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, si
     if (result != VPL_SUCCESS) {
         vplFree(context, buffer.bytes);
         return result;
+    }
+    if (context->fileObserver != NULL) {
+        context->fileObserver(context->fileUser, &(vplMemoryFile){path, buffer.bytes, size});
     }
     *bytesOut = (char*)buffer.bytes;
     *sizeOut = size;

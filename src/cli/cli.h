@@ -105,11 +105,14 @@ bool printHelp(const char* topic, const char* subject);
 // Prints what a shell needs to complete command lines: "bash", "zsh" or "fish". Returns false after complaining.
 bool printCompletion(const char* shell);
 
-// One sentence on stderr, starting with "vpl: ".
+// One sentence on stderr, starting with "vpl: " (see setSpeaker).
 #if defined(__GNUC__)
 __attribute__((format(printf, 1, 2)))
 #endif
 void complain(const char* format, ...);
+
+// Who complains instead of "vpl"; the name must last. NULL: nobody, and sentences are not printed.
+void setSpeaker(const char* name);
 
 // Prints messages of the library as --quiet and -v ask for. Takes the Arguments.
 vplLogFcn logToStderr;
@@ -180,6 +183,14 @@ bool isStdout(const char* path);
 // Returns true if a file can probably be written there; complains otherwise. Called before hours of
 // rendering.
 bool checkOutput(const char* path);
+
+// How the picture is shown in 8 bits, as --exposure, --tonemap and --show ask for it.
+vplWriteOptions chooseDisplay(const Arguments* arguments);
+void warnOfDisplay(const Arguments* arguments);
+
+// Prepares a picture for the file format of `path`: makes metres and normals visible in a PNG, and replaces an automatic
+// exposure by that of this picture, for those that follow. An exit code.
+int preparePicture(const Arguments* arguments, vplImage* image, const char* path, vplWriteOptions* display);
 
 // Writes a picture of light by -o, --exposure and --tonemap; an exit code.
 int writeWholePicture(const Arguments* arguments, vplImage* image);

@@ -62,7 +62,7 @@ static bool isLight(vplShow show)
            show == VPL_SHOW_DENOISED || show == VPL_SHOW_PATCH_RADIOSITY;
 }
 
-static vplWriteOptions chooseDisplay(const Arguments* a)
+vplWriteOptions chooseDisplay(const Arguments* a)
 {
     const vplShow show = a->render.output.show;
     vplWriteOptions display = vplDefaultWriteOptions();
@@ -84,7 +84,7 @@ static vplWriteOptions chooseDisplay(const Arguments* a)
     return display;
 }
 
-static void warnOfDisplay(const Arguments* a)
+void warnOfDisplay(const Arguments* a)
 {
     static const char* const NAMES[] = {"exposure", "tonemap"};
     for (int i = 0; i < 2 && !a->quiet; i++) {
@@ -113,8 +113,7 @@ static int writeToStdout(const vplImage* image, const char* path, const vplWrite
     return code;
 }
 
-// Writes a picture. An automatic exposure is replaced by that of this picture, for those that follow.
-static int writePicture(const Arguments* a, vplImage* image, const char* path, vplWriteOptions* display)
+int preparePicture(const Arguments* a, vplImage* image, const char* path, vplWriteOptions* display)
 {
     const vplShow show = a->render.output.show;
     const bool png = endsWith(path, ".png");
@@ -130,6 +129,15 @@ static int writePicture(const Arguments* a, vplImage* image, const char* path, v
     if (png && a->verbose && !isNoLight(show)) {
         const bool automatic = chooseDisplay(a).exposure == VPL_EXPOSURE_AUTO;
         complain("exposure %+.2f stops%s", (double)display->exposure, automatic ? " (auto)" : "");
+    }
+    return EXIT_DONE;
+}
+
+static int writePicture(const Arguments* a, vplImage* image, const char* path, vplWriteOptions* display)
+{
+    const int code = preparePicture(a, image, path, display);
+    if (code != EXIT_DONE) {
+        return code;
     }
     return isStdout(path) ? writeToStdout(image, path, display)
                           : exitCode(vplImage_Write(image, path, display), false);

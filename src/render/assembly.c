@@ -3,6 +3,7 @@
 // turn waits.
 #include "base/context.h"
 #include "render/piece_file.h"
+#include "render/renderer.h"
 #include "render/stages/results.h"
 
 #include <string.h>
@@ -89,6 +90,17 @@ static vplResult checkSame(const vplAssembly* a, const vplPieceHeader* h, const 
                        f->grid.passes);
     }
     return VPL_SUCCESS;
+}
+
+vplResult vplAssembly_CheckRenderer(const vplAssembly* a, const vplRenderer* renderer)
+{
+    vplPieceHeader own = a->first;
+    if (a->first.grid.count == 0) {
+        return VPL_SUCCESS;
+    }
+    own.scene = vplRenderer_HashScene(renderer);
+    TRY(vplRenderer_HashOptions(renderer, &own.options));
+    return checkSame(a, &own, "this render");
 }
 
 // Adds the passes of a band whose turn it is.

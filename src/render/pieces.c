@@ -101,7 +101,7 @@ static vplResult drawPiece(vplRenderer* r, vplImage* images[2])
     return show->drawOver != NULL ? show->drawOver(&r->runner.run, images[0]) : VPL_SUCCESS;
 }
 
-static vplResult hashOptions(const vplRenderer* r, uint64_t* hashOut)
+vplResult vplRenderer_HashOptions(const vplRenderer* r, uint64_t* hashOut)
 {
     vplByteBuffer text = {.context = r->runner.run.context};
     vplReplayList(r->plan, &text);
@@ -147,12 +147,15 @@ vplResult vplRenderer_MakePiece(vplRenderer* r, const vplPieceGrid* grid, int in
                         .index = index,
                         .mean = r->plan->progressive,
                         .share = r->plan->progressive ? vplShareOfPass(r->plan, place.pass) : 1};
-    TRY(hashOptions(r, &h.options));
+    TRY(vplRenderer_HashOptions(r, &h.options));
     run->pass = place.pass;
     run->firstRow = place.firstRow;
     run->endRow = place.endRow;
     r->runner.stepFrom = r->runner.reported = 0;
     r->runner.stepTo = 1;
+    if (r->plan->options.method == VPL_METHOD_RADIOSITY) {
+        vplRunner_Forget(&r->runner); // or its sweeps would go on from the solution of the last piece
+    }
     vplResult result = drawPiece(r, images);
     run->firstRow = run->endRow = 0;
     result = result == VPL_SUCCESS ? writePiece(run->context, &h, images, bytesOut) : result;

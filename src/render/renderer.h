@@ -76,6 +76,9 @@ vplResult vplRenderer_Replace(vplRenderer* renderer, const vplRenderOptions* opt
 // Identifies what is rendered: the scene, and the caller's camera where there is one.
 uint64_t vplRenderer_HashScene(const vplRenderer* renderer);
 
+// The hash of all options of the plan, which pieces carry (pieces.c). VPL_OUT_OF_MEMORY.
+vplResult vplRenderer_HashOptions(const vplRenderer* renderer, uint64_t* hashOut);
+
 // Makes sums of passes, all 0.
 vplResult vplRenderer_OpenSums(vplRenderer* renderer);
 

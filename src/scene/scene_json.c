@@ -252,10 +252,10 @@ vplResult vplScene_LoadMemory(vplContext* context, const vplMemoryFile* files, i
                            files[i].size);
         }
     }
-    context->files = files;
-    context->fileCount = count;
+    const vplMemoryFile* before = context->files;
+    const int beforeCount = context->fileCount;
+    vplContext_SetFiles(context, files, count);
     const vplResult result = vplScene_LoadFor(context, files[0].path, def, sceneOut);
-    context->files = NULL;
-    context->fileCount = 0;
+    vplContext_SetFiles(context, before, beforeCount);
     return result;
 }

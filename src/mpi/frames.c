@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// Frames of a sequence: each rank renders whole frames and sends the bytes of their files, which rank 0 writes. The file of
+// --checkpoint has a line for each frame that was written.
+#include "mpi/ranks.h"
+
+#include "cli/bench/measure.h"
+#include "cli/tradeoff/tradeoff.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct Frames {
+    Ranks* ranks;
+    const vplScene* scene;
+    vplContext* context;
+    vplRenderOptions options;
+    vplWriteOptions display; // its exposure is that of the first frame
+    bool* done;
+    Journal journal;
+    char title[64]; // the first line of the journal: hashes of scene and options
+} Frames;
+
+// What comes before the bytes of a frame's file.
+typedef struct FrameHeader {
+    double exposure;
+    uint64_t hash;
+} FrameHeader;
+
+static bool nameFrame(const Frames* f, int index, char path[PATH_MAX])
+{
+    const Arguments* a = f->ranks->arguments;
+    return numberName(a->output, a->frames[0] + index, a->frames[1], path, PATH_MAX);
+}
+
+static vplResult encode(Frames* f, vplImage* image, const char* path, uint8_t** bytesOut, size_t* sizeOut)
+{
+    FrameHeader header = {.hash = vplImage_Hash(image)};
+    uint8_t* bytes;
+    size_t size;
+    if (preparePicture(f->ranks->arguments, image, path, &f->display) != EXIT_DONE) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    header.exposure = (double)f->display.exposure;
+    TRY(vplImage_Encode(image, path, &f->display, &bytes, &size));
+    *sizeOut = sizeof header + size;
+    *bytesOut = malloc(*sizeOut);
+    if (*bytesOut != NULL) {
+        memcpy(*bytesOut, &header, sizeof header);
+        memcpy(*bytesOut + sizeof header, bytes, size);
+    }
+    vplBytes_Free(f->context, bytes);
+    return *bytesOut != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+static vplResult makeFrame(void* user, int index, uint8_t** bytesOut, size_t* sizeOut)
+{
+    Frames* f = user;
+    vplImage* image;
+    char path[PATH_MAX];
+    nameFrame(f, index, path); // renderFrames has checked the lengths
+    f->options.sequence.frame = f->ranks->arguments->frames[0] + index;
+    TRY(vplRender(f->scene, &f->options, &image, NULL));
+    const vplResult result = encode(f, image, path, bytesOut, sizeOut);
+    vplImage_Destroy(image);
+    return result;
+}
+
+static int takeFrame(void* user, int index, const uint8_t* bytes, size_t size)
+{
+    Frames* f = user;
+    FrameHeader header;
+    char path[PATH_MAX], line[128];
+    nameFrame(f, index, path);
+    memcpy(&header, bytes, sizeof header);
+    f->display.exposure = index == 0 ? (float)header.exposure : f->display.exposure;
+    const int code =
+        exitCode(vplWriteFile(f->context, path, bytes + sizeof header, size - sizeof header), false);
+    const int length = snprintf(line, sizeof line, "%d %a %016llx\n", f->ranks->arguments->frames[0] + index,
+                                header.exposure, (unsigned long long)header.hash);
+    if (code != EXIT_DONE || !appendJournal(&f->journal, line, (size_t)length)) {
+        return EXIT_COULD_NOT;
+    }
+    f->done[index] = true;
+    return EXIT_DONE;
+}
+
+// ---- going on
+
+static uint64_t hashText(const char* text)
+{
+    uint64_t hash = 0xcbf29ce484222325u; // FNV-1a
+    for (; *text != 0; text++) {
+        hash = (hash ^ (uint8_t)*text) * 0x100000001b3u;
+    }
+    return hash;
+}
+
+static void writeTitle(Frames* f)
+{
+    const Arguments* a = f->ranks->arguments;
+    char words[4096];
+    writeCommand(&a->render, words, sizeof words - 64);
+    snprintf(words + strlen(words), 64, " exposure %a tonemap %d", a->exposure, a->tonemap);
+    snprintf(f->title, sizeof f->title, "vpl-mpi frames %016llx %016llx\n",
+             (unsigned long long)vplScene_GetHash(f->scene), (unsigned long long)hashText(words));
+}
+
+// Marks the frames that a journal names and whose files are there. *keptOut is the size of its whole lines.
+static int readLines(Frames* f, const char* path, const char* text, size_t size, size_t* keptOut)
+{
+    const Arguments* a = f->ranks->arguments;
+    const size_t title = strlen(f->title);
+    if (size < title || memcmp(text, f->title, title) != 0) {
+        complain("%s: is no list of frames of this scene with these options, which begins with %.*s", path,
+                 (int)title - 1, f->title);
+        return EXIT_USAGE;
+    }
+    size_t at = title;
+    for (const char* end; (end = memchr(text + at, '\n', size - at)) != NULL; at = (size_t)(end - text) + 1) {
+        int frame;
+        double exposure;
+        char file[PATH_MAX];
+        if (sscanf(text + at, "%d %la", &frame, &exposure) != 2 || frame < a->frames[0] ||
+            frame > a->frames[1]) {
+            continue; // a frame of a longer sequence
+        }
+        const int index = frame - a->frames[0];
+        f->done[index] = nameFrame(f, index, file) && access(file, R_OK) == 0;
+        f->display.exposure = index == 0 && f->done[0] ? (float)exposure : f->display.exposure;
+    }
+    if (at < size && !a->quiet) {
+        complain("warning: %s: its last %zu bytes are no whole line and are dropped", path, size - at);
+    }
+    *keptOut = at;
+    return EXIT_DONE;
+}
+
+static int openFiles(Frames* f)
+{
+    const Arguments* a = f->ranks->arguments;
+    uint8_t* bytes = NULL;
+    size_t size = 0, kept = 0;
+    int code = EXIT_DONE;
+    if (a->resume != NULL) {
+        code = readWhole(a->resume, &bytes, &size) ? readLines(f, a->resume, (char*)bytes, size, &kept)
+                                                   : EXIT_USAGE;
+    }
+    const bool same = a->resume != NULL && a->checkpoint != NULL && strcmp(a->resume, a->checkpoint) == 0;
+    if (code == EXIT_DONE && a->checkpoint != NULL && !same && access(a->checkpoint, F_OK) == 0) {
+        complain("%s: is there already; go on with --resume %s, or delete it", a->checkpoint, a->checkpoint);
+        code = EXIT_USAGE;
+    }
+    if (code == EXIT_DONE && a->checkpoint != NULL) {
+        const bool fresh = kept == 0;
+        const uint8_t* first = fresh ? (const uint8_t*)f->title : bytes;
+        code = openJournal(&f->journal, a->checkpoint, first, fresh ? strlen(f->title) : kept)
+                   ? EXIT_DONE
+                   : EXIT_COULD_NOT;
+    }
+    free(bytes);
+    return code;
+}
+
+// ---- the sequence
+
+// Renders the first frame alone if all others need its exposure.
+static int renderFirst(Frames* f, Work* work)
+{
+    const int count = work->count;
+    const bool waits = f->display.exposure == VPL_EXPOSURE_AUTO && (f->ranks->rank > 0 || !f->done[0]);
+    int code = EXIT_DONE;
+    if (shareNumber(f->ranks, waits) != 0) {
+        work->count = 1;
+        code = runWork(f->ranks, work);
+        work->count = count;
+    }
+    int bits;
+    memcpy(&bits, &f->display.exposure, sizeof bits);
+    bits = shareNumber(f->ranks, bits);
+    memcpy(&f->display.exposure, &bits, sizeof bits);
+    return code;
+}
+
+static int checkNames(const Frames* f)
+{
+    char path[PATH_MAX];
+    const Arguments* a = f->ranks->arguments;
+    if (!nameFrame(f, a->frames[1] - a->frames[0], path)) {
+        complain("%s: the name is too long", a->output);
+        return EXIT_USAGE;
+    }
+    return checkOutput(path) ? EXIT_DONE : EXIT_COULD_NOT;
+}
+
+int renderFrames(Ranks* r, const vplScene* scene)
+{
+    const double start = wallMs();
+    const Arguments* a = r->arguments;
+    Frames f = {.ranks = r,
+                .scene = scene,
+                .context = vplScene_GetContext(scene),
+                .options = a->render,
+                .display = chooseDisplay(a),
+                .journal = {.file = -1}};
+    Progress progress = beginProgress(a->quiet);
+    Work work = {.name = "frames",
+                 .count = a->frames[1] - a->frames[0] + 1,
+                 .make = makeFrame,
+                 .take = takeFrame,
+                 .user = &f,
+                 .progress = &progress,
+                 .checkpoint = a->checkpoint};
+    f.options.progress = attendWork;
+    f.options.progressUser = &work;
+    f.done = calloc((size_t)work.count, sizeof *f.done);
+    work.done = r->rank == 0 ? f.done : NULL;
+    writeTitle(&f);
+    int code = f.done == NULL ? EXIT_COULD_NOT
+                              : exitCode(vplHistory_Create(f.context, &f.options.sequence.history), false);
+    if (code == EXIT_DONE && r->rank == 0) {
+        code = checkNames(&f);
+        code = code == EXIT_DONE ? openFiles(&f) : code;
+    }
+    code = largestNumber(r, code);
+    code = code == EXIT_DONE ? renderFirst(&f, &work) : code;
+    code = code == EXIT_DONE ? runWork(r, &work) : code;
+    if (r->rank == 0) {
+        endProgress(&progress);
+        code = closeJournal(&f.journal) || code != EXIT_DONE ? code : EXIT_COULD_NOT;
+        code = code == EXIT_DONE ? reportRanks(r, wallMs() - start, 0) : code;
+    }
+    vplHistory_Destroy(f.options.sequence.history);
+    free(f.done);
+    return shareNumber(r, code);
+}

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// One picture by pieces. Rank 0 puts them together and appends them to the file of --checkpoint, which vpl merge reads, too.
+#include "mpi/ranks.h"
+
+#include "cli/bench/measure.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// Each rank gets about so many pieces. A band repeats what its pass needs (lights, maps) at another rank, so there are no
+// more than dynamic scheduling needs: with 4 the last piece is at most a quarter of a rank's work.
+enum { PIECES_PER_RANK = 4 };
+
+typedef struct Picture {
+    Ranks* ranks;
+    vplContext* context;
+    vplRenderer* renderer;
+    vplPieceGrid grid;
+    vplAssembly* assembly; // at rank 0
+    Journal journal;
+    bool* done;
+} Picture;
+
+static vplResult makePiece(void* user, int index, uint8_t** bytesOut, size_t* sizeOut)
+{
+    Picture* p = user;
+    uint8_t* bytes;
+    TRY(vplRenderer_MakePiece(p->renderer, &p->grid, index, &bytes, sizeOut));
+    *bytesOut = malloc(*sizeOut);
+    if (*bytesOut != NULL) {
+        memcpy(*bytesOut, bytes, *sizeOut);
+    }
+    vplBytes_Free(p->context, bytes);
+    return *bytesOut != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+static int takePiece(void* user, int index, const uint8_t* bytes, size_t size)
+{
+    Picture* p = user;
+    size_t used;
+    (void)index;
+    if (!appendJournal(&p->journal, bytes, size)) {
+        return EXIT_COULD_NOT;
+    }
+    return exitCode(vplAssembly_Add(p->assembly, bytes, size, "a piece from another rank", &used), false);
+}
+
+// ---- going on with a file of pieces
+
+// Adds the pieces at the front of a file. *keptOut is the size of those that are whole.
+static int readPieces(Picture* p, const char* path, const uint8_t* bytes, size_t size, size_t* keptOut)
+{
+    size_t at = 0, used = 0;
+    vplResult result = VPL_SUCCESS;
+    while (at < size && result == VPL_SUCCESS) {
+        setSpeaker(NULL); // the sentence of a damaged end is a warning here
+        result = vplAssembly_Add(p->assembly, bytes + at, size - at, path, &used);
+        setSpeaker(p->ranks->speaker);
+        at += result == VPL_SUCCESS ? used : 0;
+    }
+    if (result == VPL_PARSE_ERROR && at == 0) {
+        complain("%s: has no whole piece of a picture", path);
+        return EXIT_USAGE;
+    }
+    if (result == VPL_PARSE_ERROR && !p->ranks->arguments->quiet) {
+        complain("warning: %s: its last %zu bytes are no whole piece and are dropped", path, size - at);
+    }
+    if (result != VPL_SUCCESS && result != VPL_PARSE_ERROR) {
+        complain("%s: a piece after %zu bytes is of another picture than the first", path, at);
+        return exitCode(result, true);
+    }
+    *keptOut = at;
+    return EXIT_DONE;
+}
+
+// Reads --resume and opens --checkpoint.
+static int openFiles(Picture* p)
+{
+    const Arguments* a = p->ranks->arguments;
+    uint8_t* bytes = NULL;
+    size_t size = 0, kept = 0;
+    int code = EXIT_DONE;
+    if (a->resume != NULL) {
+        code =
+            readWhole(a->resume, &bytes, &size) ? readPieces(p, a->resume, bytes, size, &kept) : EXIT_USAGE;
+    }
+    if (code == EXIT_DONE) {
+        code = exitCode(vplAssembly_CheckRenderer(p->assembly, p->renderer), true);
+    }
+    const bool same = a->resume != NULL && a->checkpoint != NULL && strcmp(a->resume, a->checkpoint) == 0;
+    if (code == EXIT_DONE && a->checkpoint != NULL && !same && access(a->checkpoint, F_OK) == 0) {
+        complain("%s: is there already; go on with --resume %s, or delete it", a->checkpoint, a->checkpoint);
+        code = EXIT_USAGE;
+    }
+    if (code == EXIT_DONE && a->checkpoint != NULL && !openJournal(&p->journal, a->checkpoint, bytes, kept)) {
+        code = EXIT_COULD_NOT;
+    }
+    free(bytes);
+    return code;
+}
+
+// ---- the division
+
+// A file of pieces keeps its division, whatever the number of ranks.
+static vplResult divide(Picture* p)
+{
+    const vplPieceGrid before =
+        p->assembly != NULL ? vplAssembly_GetGrid(p->assembly) : (vplPieceGrid){.count = 0};
+    int bands = before.count > 0 ? before.bands : p->ranks->options.bands;
+    TRY(vplRenderer_Divide(p->renderer, 1, &p->grid));
+    if (bands == 0 && p->ranks->count > 1) {
+        bands = (PIECES_PER_RANK * p->ranks->count + p->grid.passes - 1) / p->grid.passes;
+    }
+    return bands > 1 ? vplRenderer_Divide(p->renderer, bands, &p->grid) : VPL_SUCCESS;
+}
+
+static int prepare(Picture* p, const vplScene* scene, Work* work)
+{
+    vplRenderOptions options = p->ranks->arguments->render;
+    options.progress = attendWork;
+    options.progressUser = work;
+    const bool zero = p->ranks->rank == 0;
+    int code = exitCode(vplRenderer_Create(scene, &options, &p->renderer), true);
+    if (code == EXIT_DONE && zero) {
+        code = exitCode(vplAssembly_Create(p->context, &p->assembly), false);
+        code = code == EXIT_DONE ? openFiles(p) : code;
+        code = code == EXIT_DONE ? exitCode(divide(p), true) : code;
+    }
+    code = largestNumber(p->ranks, code);
+    const int bands = shareNumber(p->ranks, p->grid.bands);
+    if (code == EXIT_DONE && !zero) {
+        code = exitCode(vplRenderer_Divide(p->renderer, bands, &p->grid), true);
+    }
+    p->done = calloc((size_t)p->grid.count + 1, sizeof *p->done);
+    if (code == EXIT_DONE && p->done == NULL) {
+        complain("out of memory");
+        code = EXIT_COULD_NOT;
+    }
+    for (int i = 0; code == EXIT_DONE && zero && i < p->grid.count; i++) {
+        p->done[i] = vplAssembly_GetGrid(p->assembly).count > 0 && vplAssembly_Has(p->assembly, i);
+    }
+    work->count = p->grid.count;
+    work->done = zero ? p->done : NULL;
+    return largestNumber(p->ranks, code);
+}
+
+static int finish(Picture* p, double start)
+{
+    vplImage* image = NULL;
+    int code = exitCode(vplAssembly_GetImage(p->assembly, &image), false);
+    const uint64_t hash = code == EXIT_DONE ? vplImage_Hash(image) : 0;
+    code = code == EXIT_DONE ? writeWholePicture(p->ranks->arguments, image) : code;
+    vplImage_Destroy(image);
+    return code == EXIT_DONE ? reportRanks(p->ranks, wallMs() - start, hash) : code;
+}
+
+int renderPieces(Ranks* r, const vplScene* scene)
+{
+    const double start = wallMs();
+    Picture p = {.ranks = r, .context = vplScene_GetContext(scene), .journal = {.file = -1}};
+    Progress progress = beginProgress(r->arguments->quiet);
+    Work work = {.name = "pieces",
+                 .make = makePiece,
+                 .take = takePiece,
+                 .user = &p,
+                 .progress = &progress,
+                 .checkpoint = r->arguments->checkpoint};
+    int code = prepare(&p, scene, &work);
+    if (code == EXIT_DONE) {
+        code = runWork(r, &work);
+    }
+    if (r->rank == 0) {
+        endProgress(&progress);
+        if (!closeJournal(&p.journal) && code == EXIT_DONE) {
+            code = EXIT_COULD_NOT;
+        }
+        code = code == EXIT_DONE ? finish(&p, start) : code;
+    }
+    free(p.done);
+    vplAssembly_Destroy(p.assembly);
+    vplRenderer_Destroy(p.renderer);
+    return shareNumber(r, code);
+}

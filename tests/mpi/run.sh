@@ -1,0 +1,138 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Tests of vpl-mpi: tests/mpi/run.sh BUILD. The bits of one process for 1, 2, 3, 5 and 8 ranks with both implementations, files
+# of finished units, faults. Needs build/vpl-mpi.openmpi and build/vpl-mpi.mpich (make test-mpi builds them).
+. tests/mpi/support.sh
+room=examples/scenes/room-area.json
+
+# ---- the same bits
+
+same_picture() { # IMPLEMENTATION N OPTION...
+    implementation=$1 number=$2
+    shift 2
+    rm -f "$scratch/ranks.pfm"
+    ranks "$implementation" "$number" render -o "$scratch/ranks.pfm" --quiet "$@" &&
+        cmp "$scratch/whole.pfm" "$scratch/ranks.pfm"
+}
+picture() { # NAME SCENE OPTION...
+    name=$1
+    shift
+    "$build/vpl" render -o "$scratch/whole.pfm" --quiet "$@" || exit 1
+    for implementation in openmpi mpich; do
+        for number in 1 2 3 5 8; do
+            check "${name}_of_${number}_ranks_$implementation" same_picture $implementation $number "$@"
+        done
+    done
+}
+picture Path "$room" --method path --spp 4 --size 64x150 --threads 1
+picture Passes "$room" --method keller --particles 20 --passes 5 --size 48x150 --threads 1
+picture Interleaved "$room" --method keller --particles 60 --pipeline interleaved --size 48x200 --threads 2
+picture Radiosity "$room" --method radiosity --patches 100 --size 48x150 --threads 1
+picture Ssvp "$room" --method ssvp --first-bounce 16 --second-bounce 16 --size 48x150 --threads 1
+picture FilesOfTheScene examples/scenes/textured-room.json --method direct --size 48x150 --threads 1
+
+same_frames() { # IMPLEMENTATION N OPTION...
+    implementation=$1 number=$2
+    shift 2
+    rm -f "$scratch"/ranks-*
+    ranks "$implementation" "$number" render -o "$scratch/ranks.png" --quiet "$@" || return 1
+    for frame in "$scratch"/whole-*; do
+        cmp "$frame" "$scratch/ranks-${frame##*-}" || return 1
+    done
+}
+sequence="examples/scenes/room-path.json --frames 0:6 --method keller --particles 20 --size 48x32 --threads 1"
+"$build/vpl" render $sequence -o "$scratch/whole.png" --quiet
+for implementation in openmpi mpich; do
+    for number in 1 2 3 5 8; do
+        check "Sequence_of_${number}_ranks_$implementation" same_frames $implementation $number $sequence
+    done
+done
+rm -f "$scratch"/whole* "$scratch"/ranks*
+
+options="$room --method path --spp 4 --size 64x150 --threads 1"
+"$build/vpl" render $options -o "$scratch/whole.pfm" --quiet
+check RankZeroMayWait same_picture openmpi 3 $options --rank-zero-waits
+check RanksMayReadTheSceneThemselves same_picture openmpi 3 $options --shared-scene
+through_a_pipe() {
+    rm -f "$scratch/ranks.pfm"
+    ranks openmpi 3 render - ${options#* } -o "$scratch/ranks.pfm" --quiet <"$room" && cmp "$scratch/whole.pfm" "$scratch/ranks.pfm"
+}
+check SceneOfAPipeReachesAllRanks through_a_pipe
+
+# ---- files of finished pieces
+
+pieces_are_kept() {
+    ranks openmpi 3 render $options -o "$scratch/a.pfm" --quiet --checkpoint "$scratch/pieces" &&
+        "$build/vpl" merge "$scratch/pieces" -o "$scratch/merged.pfm" && cmp "$scratch/whole.pfm" "$scratch/merged.pfm"
+}
+check FileOfPiecesIsForMerge pieces_are_kept
+resumes() { # IMPLEMENTATION N BYTES: after the first bytes of the file
+    head -c "$3" "$scratch/pieces" >"$scratch/part"
+    rm -f "$scratch/ranks.pfm"
+    ranks "$1" "$2" render $options -o "$scratch/ranks.pfm" --resume "$scratch/part" --checkpoint "$scratch/part" &&
+        cmp "$scratch/whole.pfm" "$scratch/ranks.pfm" &&
+        "$build/vpl" merge "$scratch/part" -o "$scratch/merged.pfm" && cmp "$scratch/whole.pfm" "$scratch/merged.pfm"
+}
+size=$(wc -c <"$scratch/pieces")
+check ResumesWithOtherRanks resumes mpich 5 $((size / 2))
+check ResumesWithOneRank resumes openmpi 1 $((size / 3))
+check ResumesWhatIsWhole resumes openmpi 2 "$size"
+warns_of_a_truncated_piece() {
+    head -c $((size - 10)) "$scratch/pieces" >"$scratch/part"
+    ranks openmpi 2 render $options -o "$scratch/ranks.pfm" --resume "$scratch/part" 2>"$scratch/errors"
+    grep -q "are no whole piece and are dropped" "$scratch/errors"
+}
+check TruncatedPieceIsDroppedWithAWarning warns_of_a_truncated_piece
+
+refuses() { # CODE SENTENCE COMMAND...
+    code=$1 sentence=$2
+    shift 2
+    "$@" >"$scratch/out" 2>"$scratch/errors"
+    got=$?
+    [ $got -eq "$code" ] && grep -q "$sentence" "$scratch/errors" && [ "$(grep -c '^vpl-mpi: ' "$scratch/errors")" -eq 1 ] ||
+        { echo "exit code $got, must be $code; on standard error:"; cat "$scratch/errors"; return 1; }
+}
+for implementation in openmpi mpich; do
+    check "OtherSceneIsRefused_$implementation" refuses 2 "scene or camera differ" ranks $implementation 2 render \
+        examples/scenes/room.json ${options#* } -o "$scratch/no.pfm" --resume "$scratch/pieces"
+    check "OtherOptionsAreRefused_$implementation" refuses 2 "options differ" ranks $implementation 2 render \
+        $options --seed 9 -o "$scratch/no.pfm" --resume "$scratch/pieces"
+    check "OldFileIsNotOverwritten_$implementation" refuses 2 "is there already" ranks $implementation 2 render \
+        $options -o "$scratch/no.pfm" --checkpoint "$scratch/pieces"
+    check "MissingSceneIsToldOnce_$implementation" refuses 2 "cannot open" ranks $implementation 3 render \
+        nowhere.json -o "$scratch/no.pfm"
+    check "WrongOptionIsToldOnce_$implementation" refuses 2 "unknown option" ranks $implementation 3 render \
+        $options -o "$scratch/no.pfm" --sppp 3
+    check "BudgetIsToldOnce_$implementation" refuses 2 "a time or an error ends this picture" ranks $implementation 3 render \
+        $options --budget 50 -o "$scratch/no.pfm"
+    check "OtherCommandsAreRefused_$implementation" refuses 2 "must be render" ranks $implementation 2 bake \
+        "$room" -o "$scratch/no.ply"
+    check "BadGraceIsRefused_$implementation" refuses 2 "grace is" ranks $implementation 2 render \
+        $options -o "$scratch/no.pfm" --grace never
+done
+full_disk() { # it has room for two pieces and a half
+    refuses 1 "cannot write: No space left on device; it keeps what was finished before" ranks "$1" 3 render $options \
+        -o "$scratch/no.pfm" --quiet --checkpoint "$scratch/small/part" || return 1
+    [ ! -e "$scratch/no.pfm" ] && [ "$(wc -c <"$scratch/small/part")" -eq 24736 ] && cp "$scratch/small/part" "$scratch/part" &&
+        rm "$scratch/small/part" &&
+        ranks "$1" 2 render $options -o "$scratch/ranks.pfm" --resume "$scratch/part" 2>"$scratch/errors" &&
+        ! grep -q "no whole piece" "$scratch/errors" && cmp "$scratch/whole.pfm" "$scratch/ranks.pfm"
+}
+mkdir "$scratch/small"
+if mount -t tmpfs -o size=28k none "$scratch/small" 2>/dev/null; then
+    check FullDiskKeepsWhatWasFinished_openmpi full_disk openmpi
+    check FullDiskKeepsWhatWasFinished_mpich full_disk mpich
+    umount "$scratch/small"
+else
+    echo "skipped: FullDiskKeepsWhatWasFinished needs the right to mount a small file system"
+fi
+counts_every_rank() {
+    ranks openmpi 2 render $options -o "$scratch/ranks.pfm" --stats "$scratch/stats.json" &&
+        [ "$(grep -c busy_ms "$scratch/stats.json")" -eq 2 ]
+}
+check StatisticsOfEveryRank counts_every_rank
+
+check SixKilledJobsAreResumed tests/mpi/kill.sh "$build" 6
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
