@@ -263,12 +263,12 @@ vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKe
 
 // Reads an OBJ file, with the MTL files that it names, as one mesh (see examples/scenes/README.md). Adds the
 // materials that its faces use (Kd reflectance, Ke emission) under the names "file.obj:name", and a grey one
-// for faces without a material. Unsupported statements are logged once each, as warnings. VPL_FILE_ERROR,
+// for faces without a material. indexOut may be NULL. Unsupported statements are logged once each, as warnings. VPL_FILE_ERROR,
 // VPL_OUT_OF_MEMORY, VPL_LIMIT, or VPL_PARSE_ERROR with "file:line:column:" in its message.
 vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut);
 
 // Reads an OBJ, PLY or STL file, by its ending, as one mesh. A PLY or STL file adds one unnamed grey material, or a white
-// one if the vertices have colours. VPL_INVALID_ARGUMENT for another ending; otherwise as vplScene_LoadObj.
+// one if the vertices have colours. VPL_INVALID_ARGUMENT for another ending; otherwise as vplScene_LoadObj; indexOut may be NULL.
 vplResult vplScene_LoadMesh(vplScene* scene, const char* path, int* indexOut);
 
 // Adds what a model file places as objects: one for an OBJ, PLY or STL file, one for each node of a glTF file that has a
@@ -285,7 +285,7 @@ int vplScene_GetMeshCount(const vplScene* scene);
 int vplScene_GetObjectCount(const vplScene* scene);
 int vplScene_GetEmitterCount(const vplScene* scene);
 
-// The declared defs; the scene owns their names and arrays. The index must be in range.
+// The declared defs; the scene owns their names and arrays. NULL for an index out of range.
 const vplCameraDef* vplScene_GetCamera(const vplScene* scene, int index);
 const vplTextureDef* vplScene_GetTexture(const vplScene* scene, int index); // without `texels` and `linear`
 const vplMaterialDef* vplScene_GetMaterial(const vplScene* scene, int index);
@@ -300,7 +300,7 @@ const vplEnvironmentDef* vplScene_GetEnvironment(const vplScene* scene);
 // The emitter that is the sun of the scene's sky; -1: there is none.
 int vplScene_GetSun(const vplScene* scene);
 
-// The keys of a path, which the scene owns; NULL and 0 if there is none. The index must be in range.
+// The keys of a path, which the scene owns; NULL and 0 if there is none, and for an index out of range.
 const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut);
 const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut);
 

@@ -29,10 +29,12 @@ typedef struct vplMat4 {
 vplMat4 vplMat4_Identity(void);
 
 // a * b: b is applied first.
+// Not checked, for speed: pointers must not be NULL.
 vplMat4 vplMat4_Multiply(const vplMat4* a, const vplMat4* b);
 
 // Scales, then rotates about x, y and z (radians), then translates. Quarter turns are exact: a rotation by
 // VPL_PI / 2 has the elements 0 and 1 without rounding errors.
+// Not checked, for speed: pointers must not be NULL.
 vplMat4 vplMat4_FromParts(vplVec3 translate, const double rotate[3], vplVec3 scale);
 
 // World to view space of a camera at `eye` that looks at `target`, which is along -z in view space.
@@ -43,9 +45,11 @@ vplMat4 vplMat4_LookAt(vplVec3 eye, vplVec3 target, vplVec3 up);
 vplMat4 vplMat4_Perspective(double fovY, double aspect, double near, double far);
 
 // Transforms the point p, with w = 1, by the affine part of m; no perspective divide.
+// Not checked, for speed: pointers must not be NULL.
 vplVec3 vplMat4_TransformPoint(const vplMat4* m, vplVec3 p);
 
 // Transforms the direction d, with w = 0: translation has no effect.
+// Not checked, for speed: pointers must not be NULL.
 vplVec3 vplMat4_TransformDirection(const vplMat4* m, vplVec3 d);
 
 VPL_HEADER_END

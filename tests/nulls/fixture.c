@@ -136,6 +136,7 @@ static void makeMaps(void)
     vplCubeMapDef cube = vplDefaultCubeMapDef();
     cube.position = f.emitter.position;
     cube.size = 16;
+    f.cubeDef = cube;
     MUST(vplCubeMap_Create(f.geometry, &cube, NULL, NULL, &f.cube));
     const vplShadowDef shadow = vplDefaultShadowDef();
     MUST(vplShadow_Create(f.cube, &shadow, &f.shadow));
@@ -159,18 +160,30 @@ static void makeLights(void)
     MUST(vplFindClusters(f.lights, &clusters, &f.clusters));
     vplParaboloidPlace places[2];
     for (int i = 0; i < 2; i++) {
-        places[i] = (vplParaboloidPlace){f.clusters->clusters[i].position, f.clusters->clusters[i].normal, 2, 1};
+        places[i] =
+            (vplParaboloidPlace){f.clusters->clusters[i].position, f.clusters->clusters[i].normal, 2, 1};
     }
     f.paraboloidPlace = places[0];
     MUST(vplParaboloidMaps_Create(f.context, 16, 2, true, &f.paraboloids));
     MUST(vplParaboloidMaps_Draw(f.paraboloids, f.geometry, places, 2, NULL, NULL));
     f.placementDef = vplDefaultPlacementDef();
     f.placementDef.camera = f.camera;
-    f.shade = (vplShadeDef){.emitters = &f.emitter, .shadows = &f.shadow, .emitterCount = 1, .batch = 1, .interleave = 1,
-                            .lights = f.shadeLights, .lightCount = f.shadeLightCount, .minDistance = 0.2f};
-    f.compensation = (vplCompensationDef){.rayCount = 1, .hitLights = 1, .emitters = &f.emitter, .shadows = &f.shadow,
-                                          .emitterCount = 1, .lights = f.shadeLights,
-                                          .lightCount = f.shadeLightCount, .reflection = 1};
+    f.shade = (vplShadeDef){.emitters = &f.emitter,
+                            .shadows = &f.shadow,
+                            .emitterCount = 1,
+                            .batch = 1,
+                            .interleave = 1,
+                            .lights = f.shadeLights,
+                            .lightCount = f.shadeLightCount,
+                            .minDistance = 0.2f};
+    f.compensation = (vplCompensationDef){.rayCount = 1,
+                                          .hitLights = 1,
+                                          .emitters = &f.emitter,
+                                          .shadows = &f.shadow,
+                                          .emitterCount = 1,
+                                          .lights = f.shadeLights,
+                                          .lightCount = f.shadeLightCount,
+                                          .reflection = 1};
     f.shade.compensation = &f.compensation;
     f.pass = (vplParticlePass){0, 10, 0.5};
 }
@@ -212,7 +225,8 @@ static void makeRaster(void)
 static void makeRender(void)
 {
     f.options = vplRenderOptions_Create(f.context);
-    MUST(vplRenderOptions_SetAll(f.options, "--size 8x8 --method keller --particles 4 --antialias 1 --passes 2"));
+    MUST(vplRenderOptions_SetAll(f.options,
+                                 "--size 8x8 --method keller --particles 4 --antialias 1 --passes 2"));
     MUST(vplPlan_Create(f.scene, f.options, NULL, &f.plan));
     MUST(vplRenderer_Create(f.scene, f.options, &f.renderer));
     MUST(vplRenderer_Divide(f.renderer, 1, &f.grid));
@@ -229,7 +243,8 @@ static void makeRender(void)
 
 void makeFixture(void)
 {
-    static const char scene[] = "{\"camera\":{\"eye\":[0,0,5],\"target\":[0,0,0]},\"materials\":{},\"objects\":[],\"lights\":[]}";
+    static const char scene[] =
+        "{\"camera\":{\"eye\":[0,0,5],\"target\":[0,0,0]},\"materials\":{},\"objects\":[],\"lights\":[]}";
     vplContextDef def = vplDefaultContextDef();
     def.alloc = allocate;
     def.workerCount = 1;

@@ -19,6 +19,7 @@ typedef struct Fixture {
     vplTarget target;
     vplView view;
     vplCubeMap* cube;
+    vplCubeMapDef cubeDef;
     vplShadow shadow;
     vplReflectiveMap* reflective;
     vplHemiMaps* hemi;

@@ -9,7 +9,7 @@ import re
 import sys
 
 # Arguments that are NULL by design, whatever the comment says: what a caller's function gets.
-OPTIONAL_NAMES = {"user", "data"}
+OPTIONAL_NAMES = {"user", "data", "progress"}
 
 # Valid values by "function.argument", by "type argument" and by type.
 BY_ARGUMENT = {
@@ -48,6 +48,7 @@ BY_ARGUMENT = {
     "vplBytes_Free.bytes": "f.piece",
     "vplScene_SetTransform.object": "0",
     "vplRasterStats_Add.stats": "&f.stats",
+    "vplCubeMap_Redraw.def": "&f.cubeDef",
 }
 BY_TYPE = {
     "bool": "true", "int": "1", "size_t": "1", "int64_t": "1", "uint64_t": "1", "float": "0.5f", "double": "0.5",
@@ -86,10 +87,11 @@ BY_TYPE = {
     "vplRenderOptions*": "f.options", "vplProgressFcn*": "goOn", "vplTileFcn*": "tileTask",
     "vplLayers*": "NULL", "const void*": "zeros", "const uint8_t*": "zeros", "uint8_t*": "NULL",
 }
-# Lengths of a caller's array: a larger number than the array has is outside of every contract.
+# Lengths of a caller's array, where a larger number than the array has is outside of every contract, and amounts of work,
+# where the largest takes days.
 LENGTHS = {"vplPatches_Refine.count": False, "vplCountParticles.capacity": True, "vplRenderOptions_Get.size": True,
            "vplRenderOptions_IsUsed.size": True, "vplPlan_Describe.size": True, "vplMeasureUse.rayCount": False,
-           "vplEstimateClampLoss.pointCount": False, "vplWriteFile.size": True, "vplAssembly_Add.size": True,
+           "vplEstimateClampLoss.pointCount": True, "vplPatchMesh_Sharpen.rounds": True, "vplWriteFile.size": True, "vplAssembly_Add.size": True,
            "vplImage_CompareRegions.columns": False, "vplSampleAreaLights.count": True, "vplSampleSky.count": True}
 # Types that lead to the context.
 CONTEXT_TYPES = ("vplContext vplScene vplGeometry vplImage vplCubeMap vplReflectiveMap vplHemiMaps vplParaboloidMaps "
@@ -146,11 +148,9 @@ def is_output(kind, name):
 
 
 def valid(function, index, kind, name, cookies):
-    for key in (f"{function}.{name}",):
-        if key in BY_ARGUMENT:
-            return BY_ARGUMENT[key]
+    if f"{function}.{name}" in BY_ARGUMENT:
+        return BY_ARGUMENT[f"{function}.{name}"]
     bare = re.sub(r"^const ", "", kind)
-    made = {"vplDraw": None}
     for key in (f"{kind} {name}", kind, bare):
         if key in BY_TYPE and not name.endswith("Out"):
             return BY_TYPE[key]
@@ -200,7 +200,10 @@ def wrong_values(function, kind, name, arguments, cookies, enums):
 
 
 def may_be_null(comment, name):
-    return name in OPTIONAL_NAMES or name == "progress" or "NULL" in comment.replace("must not be NULL", "")
+    """Whether a sentence about the argument, or one without a name of an argument, has the word NULL."""
+    sentences = re.split(r"(?<=[.]) ", comment.replace("must not be NULL", ""))
+    about = [s for s in sentences if "NULL" in s and (re.search(rf"\b{name}\b|\bboth\b", s) or "NULL is allowed" in s)]
+    return name in OPTIONAL_NAMES or bool(about)
 
 
 def main():
@@ -219,7 +222,7 @@ def main():
         outputs = sum(1 << i for i, (k, n) in enumerate(arguments) if k.endswith("**") and n.endswith("Out"))
         for i, (kind, argument) in enumerate(arguments):
             for text, wrong in wrong_values(name, kind, argument, arguments, cookies, enums):
-                if wrong == "NULL" and "must not be NULL" in comment:
+                if wrong == "NULL" and "must not be NULL" in comment or f"`{argument}` must be in range" in comment:
                     skipped += 1
                     continue
                 others = [k for j, (k, n) in enumerate(arguments) if j != i]
