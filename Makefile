@@ -72,6 +72,8 @@ VERSION        := $(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl
 # The number in the soname changes with the ABI: with the minor version while the major one is 0.
 SONAME         := libvpl.so.$(shell echo $(VERSION) | sed -e 's/^\(0\.[0-9]*\).*/\1/' -e 's/^\([1-9][0-9]*\)\..*/\1/')
 SHARED         := libvpl.so.$(VERSION)
+# Calls with wrong arguments are written by a Python program.
+NULLS          := $(if $(shell command -v python3),$(BUILD)/nulls)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
 .PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install uninstall clean format fuzz soak faults coverage test-mpi
@@ -101,7 +103,7 @@ test: deps
 	@$(MAKE) --no-print-directory $(JOBS) test-programs
 	@tests/run.sh $(BUILD)
 
-test-programs: programs $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS) $(BUILD)/soak
+test-programs: programs $(NULLS) $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS) $(BUILD)/soak
 
 ## make check-all   installs what is missing, the tests under gcc and clang, release, debug, sanitizers, threads, aarch64
 check-all: deps
@@ -311,6 +313,15 @@ $(BUILD)/fuzz/%_replay: $(BUILD)/obj/tests/fuzz/%_fuzz.o $(BUILD)/obj/tests/fuzz
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+# Calls of every public function with every wrong argument, written from the headers.
+$(BUILD)/nulls-calls.c: tests/nulls/generate.py $(wildcard include/vpl/*.h)
+	@mkdir -p $(@D)
+	$(Q)python3 $< $(wildcard include/vpl/*.h) >$@.new && mv $@.new $@
+
+$(BUILD)/nulls: $(BUILD)/nulls-calls.c $(wildcard tests/nulls/*.[ch]) $(BUILD)/libvpl.a
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -O0 -Itests/nulls -o $@ $(filter %.c %.a,$^) $(LDLIBS)
 
 $(BUILD)/soak: $(BUILD)/obj/tests/fuzz/soak.o $(BUILD)/obj/tests/fuzz/valid_fuzz.o $(BUILD)/libvpl.a
 	@echo "  LD  $@"

@@ -42,6 +42,11 @@ one() {
 }
 
 count "unit tests" "$build/vpl-tests"
+if [ -e "$build/nulls" ]; then
+    count "wrong arguments" "$build/nulls"
+else
+    echo "wrong arguments: skipped, need python3"
+fi
 count "golden pictures" "$build/vpl-golden" check golden "$build/golden"
 count "program" tests/cli/run.sh "$build/vpl"
 count "interrupts" tests/signals.sh "$build/vpl" 20

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Results, messages, memory and threads: what every other header needs. In all headers a pointer must not be
-// NULL unless its function or field says that it may be: functions do not check that.
+// Results, messages, memory and threads: what every other header needs.
+//
+// In all headers a pointer must not be NULL unless its function or field says that it may be; progress, user and data always
+// may. Functions with a vplResult check their own arguments: NULL is VPL_INVALID_ARGUMENT, and the message names it. Others
+// return 0, false, NULL or a struct of zeros for it, except those that loops call, whose comments say that pointers must not
+// be NULL. tests/nulls calls every function with every wrong argument.
 #ifndef VPL_BASE_H
 #define VPL_BASE_H
 
@@ -121,7 +125,8 @@ typedef struct vplContext vplContext;
 vplResult vplContext_Create(const vplContextDef* def, vplContext** contextOut);
 
 // What vplContext_Create calls, with the version of the headers that the program was built with. Any other major or minor
-// version than the library's is VPL_INVALID_ARGUMENT, because structs may differ. For other languages.
+// version than the library's is VPL_INVALID_ARGUMENT, because structs may differ. For other languages. def NULL means all
+// defaults.
 vplResult vplContext_CreateForAbi(int major, int minor, const vplContextDef* def, vplContext** contextOut);
 #define vplContext_Create(def, contextOut)                                                                   \
     vplContext_CreateForAbi(VPL_VERSION_MAJOR, VPL_VERSION_MINOR, def, contextOut)

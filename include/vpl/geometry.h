@@ -48,6 +48,7 @@ typedef struct vplHit {
 
 // Intersects a ray with the quad [-0.5, 0.5]^2 at z = 0 in local space: t > 0, closed edges, both sides.
 // Source: Franchi and Ferrante, Virtual Point Lights, "Ray-Quad".
+// Not checked, for speed: pointers must not be NULL.
 bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hitOut);
 
 // Intersects a ray with the box [-0.5, 0.5]^3 by the slab method: the entry at t > 0, or from inside the
@@ -55,6 +56,7 @@ bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hi
 // does not start on the box.
 // Source: Franchi and Ferrante, Virtual Point Lights, "Ray-Box". Departs: t = 0 is a miss, or every reflected
 // particle would hit the face it starts on.
+// Not checked, for speed: pointers must not be NULL.
 bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFace, vplHit* hitOut);
 
 // ---- the environment
@@ -84,6 +86,7 @@ vplRgb vplEnvironment_Radiance(const vplEnvironment* environment, vplVec3 direct
 
 // Radiance that surfaces receive from a direction (unit). Stores the probability density of the direction, per steradian:
 // its share of the light, the mean of red, green and blue.
+// Not checked, for speed: pointers must not be NULL.
 vplRgb vplEnvironment_Light(const vplEnvironment* environment, vplVec3 direction, double* densityOut);
 
 // Samples a direction (unit, towards the light) of this density by two numbers in [0, 1), with its light and density.
@@ -95,6 +98,7 @@ typedef struct vplEnvironmentSample {
     double density; // > 0
 } vplEnvironmentSample;
 
+// Not checked, for speed: pointers must not be NULL.
 vplEnvironmentSample vplEnvironment_Sample(const vplEnvironment* environment, double u, double v);
 
 // ---- the geometry
@@ -171,23 +175,28 @@ void vplGeometry_Destroy(vplGeometry* geometry);
 // boxes are those of vplRay_HitQuad and vplRay_HitBox, to the last digits of position and normal. Mesh
 // triangles are tested by the watertight test of Woop, Benthin and Wald, JCGT 2013: a ray through a shared
 // edge hits one of its triangles.
+// Not checked, for speed: pointers must not be NULL.
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut);
 
 // True if the ray hits something with t in (0, tMax). tMax in units of the direction.
+// Not checked, for speed: pointers must not be NULL.
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax);
 
 // A ray that leaves a hit point in `direction` and does not hit the surface it leaves: the quad, the box
 // (towards its inside only the face), the triangle. From a mesh, and from what shares a plane with another object,
 // it starts a few units in the last place off the surface.
+// Not checked, for speed: pointers must not be NULL.
 vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction);
 
 // The normal for shading, unit: interpolated on smooth objects, else the hit's own.
+// Not checked, for speed: pointers must not be NULL.
 vplVec3 vplGeometry_ShadingNormal(const vplGeometry* geometry, const vplHit* hit);
 
 // Finds the closest hit among the objects' oriented bounding boxes (quads stay quads): the cheap stand-in for
 // meshes that Franchi and Ferrante propose under "Improving the Particle Simulation". `from` is the hit that
 // the ray leaves, NULL in free space; the box of a mesh is not hit by a ray that leaves one of the mesh's own
 // triangles. Ignores ray->skip. hitOut->triangle is the object's first.
+// Not checked, for speed: pointers must not be NULL.
 bool vplGeometry_ClosestBox(const vplGeometry* geometry, const vplRay* ray, const vplHit* from,
                             vplHit* hitOut);
 
@@ -245,13 +254,16 @@ double vplEmission_Power(const vplEmission* emission);
 // inner angle, 0 outside the outer, between them 3x^2 - 2x^3, where x goes from 0 to 1 linearly in the
 // cosine.
 // Source: Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.2.1 (SmoothStep).
+// Not checked, for speed: pointers must not be NULL.
 double vplSpot_Falloff(const vplEmitterDef* spot, double cosine);
 
 // Intensity of a point or spot emitter in a direction (unit vector away from it), W/sr; irradiance of a
 // directional emitter, W/m^2.
+// Not checked, for speed: pointers must not be NULL.
 vplRgb vplEmitter_Intensity(const vplEmitterDef* emitter, vplVec3 direction);
 
 // A point on a triangle, uniform over its area for u, v uniform in [0, 1).
+// Not checked, for speed: pointers must not be NULL, and `triangle` must be in range.
 vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, float u, float v);
 
 // A particle that leaves a source. Its flux is that of all sources: divide by the number of particles.
@@ -267,6 +279,7 @@ typedef struct vplParticle {
 // Samples a particle from five numbers in [0, 1): `choice` chooses the source, u[0], u[1] the position
 // (triangle, directional, environment), u[2], u[3] the direction (cosine-distributed from a triangle, uniform from a
 // point, by the falloff from a spot, as vplEnvironment_Sample). False where nothing emits.
+// Not checked, for speed: pointers must not be NULL.
 bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],
                                 vplParticle* particleOut);
 

@@ -75,7 +75,8 @@ vplResult vplImage_CopyTo(const vplImage* image, const vplPixelsDef* pixels);
 // VPL_OUT_OF_MEMORY.
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options);
 
-// Encodes the file that vplImage_Write would write under the name, such as ".png". Free the bytes with vplBytes_Free.
+// Encodes the file that vplImage_Write would write under the name, such as ".png"; `options` NULL means defaults. Free the
+// bytes with vplBytes_Free.
 vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
                           uint8_t** bytesOut, size_t* sizeOut);
 

@@ -53,10 +53,12 @@ vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflecti
 void vplReflectiveMap_Destroy(vplReflectiveMap* map);
 
 // Index of the texel that a ray of the emitter goes through; -1 where its view does not reach.
+// Not checked, for speed: pointers must not be NULL.
 int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray);
 
 // Finds the hit of the ray through a texel's centre, inside its triangle, and the ray's unit direction.
 // Returns false where no surface is.
+// Not checked, for speed: pointers must not be NULL.
 bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                              vplHit* hitOut, vplVec3* directionOut);
 
@@ -76,6 +78,7 @@ typedef struct vplReflectiveTexel {
 // closed room the flux of all texels is a point emitter's power to rounding, and a spot's power but for up to
 // 1/size^2.
 // Departs from Dachsbacher and Stamminger: flux is incident, so that it adds up for any colours.
+// Not checked, for speed: pointers must not be NULL.
 bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                                vplReflectiveTexel* texelOut);
 
@@ -83,6 +86,7 @@ bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* g
 // nearest texels that show a surface nearer than both the point and its plane, by more than half a texel's
 // side. So no plane shadows itself, and an object within that distance of a surface casts no shadow on it.
 // If all rays within a texel's side agree, the factor agrees with them. 0 outside the map's view.
+// Not checked, for speed: pointers must not be NULL.
 float vplReflectiveMap_Factor(const vplReflectiveMap* map, vplVec3 position, vplVec3 normal);
 
 // ---- particles

@@ -83,6 +83,7 @@ typedef struct vplSidePoint {
 } vplSidePoint;
 
 // A point of cell k, uniform over it for u, v uniform in [0, 1).
+// Not checked, for speed: pointers must not be NULL.
 vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchSide* side, int k, float u,
                                      float v);
 
@@ -309,7 +310,7 @@ typedef struct vplPatchDraw {
 // Adds the mesh to an image: one draw of all fronts, one of all backs. Sides that light does not reach hide
 // what is behind them; drawn flat they are black, interpolated they show the values at their corners. `clip`:
 // x, y, z, w of the mesh's vertices in clip space (vplView_ToClip). Values within a triangle lie between
-// those of its corners. If cancelled, part of the image is drawn.
+// those of its corners. If cancelled, part of the image is drawn. statsOut may be NULL.
 // Source: Hemgren, 4.
 vplResult vplDrawPatches(const vplPatchDraw* draw, const float (*clip)[4], vplProgressFcn* progress,
                          void* user, vplImage* image, vplRasterStats* statsOut);

@@ -181,6 +181,7 @@ typedef struct vplCoverage {
 // Resolves a pixel, an element of the tile: lists the triangles that its samples show, in the order of the
 // first sample of each. Returns their number. Every sample of a pixel shows one triangle or nothing; of two
 // triangles with a common edge one covers a sample on that edge.
+// Not checked, for speed: pointers must not be NULL.
 int vplTile_GetCoverage(const vplTile* tile, int element, vplCoverage out[VPL_MAX_SAMPLES_PER_PIXEL]);
 
 // A tile task: works on a whole tile between draws. Called from any worker.

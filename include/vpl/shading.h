@@ -32,13 +32,16 @@ typedef struct vplView {
 vplView vplView_Create(const vplCameraDef* camera, int width, int height);
 
 // The same view sampled at (x, y) in [0, 1)^2 of each pixel, y down, instead of at (0.5, 0.5).
+// Not checked, for speed: pointers must not be NULL.
 vplView vplView_At(const vplView* view, double x, double y);
 
 // Pixel coordinates of a point (x right, y down, (0, 0) the upper left corner). False behind the near plane.
+// Not checked, for speed: pointers must not be NULL.
 bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y);
 
 // Clip coordinates x, y, z, w of points, with the bits that all draws of the view have. Depth z/w is reversed: 1 at the
 // near and 0 at the far plane (vplFramebuffer.reversedDepth).
+// Not checked, for speed: pointers must not be NULL.
 void vplView_ToClip(const vplView* view, const vplVec3* points, int count, float (*clipOut)[4]);
 
 // Prepares the lights of a set for shading: fills at most out[0 .. set->lightCount) and returns how many.

@@ -29,10 +29,12 @@ typedef struct vplMat4 {
 vplMat4 vplMat4_Identity(void);
 
 // a * b: b is applied first.
+// Not checked, for speed: pointers must not be NULL.
 vplMat4 vplMat4_Multiply(const vplMat4* a, const vplMat4* b);
 
 // Scales, then rotates about x, y and z (radians), then translates. Quarter turns are exact: a rotation by
 // VPL_PI / 2 has the elements 0 and 1 without rounding errors.
+// Not checked, for speed: pointers must not be NULL.
 vplMat4 vplMat4_FromParts(vplVec3 translate, const double rotate[3], vplVec3 scale);
 
 VPL_HEADER_END

@@ -20,7 +20,7 @@ typedef struct vplCubeFrame {
     vplVec3 right, up, forward;
 } vplCubeFrame;
 
-// The frame of face 0 to 5.
+// The frame of face 0 to 5; that of 0 for other numbers.
 vplCubeFrame vplCube_GetFrame(int face);
 
 // A point of a cube and the texel that holds it.
@@ -31,7 +31,8 @@ typedef struct vplCubePoint {
 } vplCubePoint;
 
 // Finds the point where a direction of any length meets the cube, for a map with `size` texels a side. Ties
-// go to z, then y, then x. Returns false for the zero vector.
+// go to z, then y, then x. Returns false for the zero vector and NaN.
+// Not checked, for speed: pointers must not be NULL.
 bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut);
 
 typedef struct vplCubeMapDef {
@@ -76,7 +77,8 @@ vplResult vplCubeMap_FindBounds(vplCubeMap* map);
 // NULL is allowed.
 void vplCubeMap_Destroy(vplCubeMap* map);
 
-// The stored distance in a direction, metres; +infinity where nothing is or for the zero vector.
+// The stored distance in a direction, metres; +infinity where nothing is, for the zero vector and for NaN.
+// Not checked, for speed: pointers must not be NULL.
 float vplCubeMap_Distance(const vplCubeMap* map, vplVec3 direction);
 
 typedef enum vplBiasRule {
@@ -115,10 +117,13 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
 // The bias subtracted from the distance of a fragment, metres. cosine is max(n.l, 0).
 // Source: VPL_BIAS_PAIR from Franchi and Ferrante, Virtual Point Lights, "Rendering the Point Light with
 // Shadows"; VPL_BIAS_EXACT from the geometry of a plane, derived in src/visibility/shadow_kernel.c.
+// Not checked, for speed: pointers must not be NULL.
 float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine);
 
 // The shadow factor s in [0, 1] at a surface point: the fraction of samples with something nearer to the
-// light. The samples lie on a disc perpendicular to the light, so that no seams show at the cube's edges.
+// light. The samples lie on a disc perpendicular to the light, so that no seams show at the cube's edges. 0 for a position
+// of NaN.
+// Not checked, for speed: pointers must not be NULL.
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal);
 
 // ---- hemi-octahedral maps: many small shadow maps of virtual lights, which shine to one side of their
@@ -176,6 +181,7 @@ void vplHemiMaps_Destroy(vplHemiMaps* maps);
 // as in VPL_BIAS_EXACT. Blockers nearer to the point than 1.5 f are ignored. So map and ray agree where every
 // blocker is further than 2.5 f + b from the point and blocks either all or none of the rays to the point's
 // plane within f around it.
+// Not checked, for speed: pointers must not be NULL.
 float vplHemiMap_Factor(const vplHemiMap* map, vplVec3 position, vplVec3 normal);
 
 // ---- paraboloid maps: shadow maps of clusters of virtual lights
@@ -185,6 +191,7 @@ float vplHemiMap_Factor(const vplHemiMap* map, vplVec3 position, vplVec3 normal)
 // for the zero vector. It is the stereographic projection: circles stay circles, and an area of the disk
 // covers 4 / (1 + p^2)^2 times as much solid angle.
 // Source: Wolfgang Heidrich and Hans-Peter Seidel, View-independent Environment Maps, Graphics Hardware 1998.
+// Not checked, for speed: pointers must not be NULL.
 bool vplParaboloid_Project(vplVec3 direction, double* x, double* y);
 
 // The unit direction of a point of the map: the inverse.
@@ -251,6 +258,7 @@ typedef struct vplParaboloidTexel {
 
 // Finds the surface in a texel: the hit of the ray through its centre, and that ray's unit direction in the
 // world. Returns false where nothing is and outside of the disk. The map must have triangles.
+// Not checked, for speed: pointers must not be NULL.
 bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry,
                              vplParaboloidTexel texel, vplHit* hitOut, vplVec3* directionOut);
 
@@ -264,6 +272,7 @@ bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geo
 // Blockers nearer to the point than f / 2 are ignored. So map and ray agree where every blocker is further
 // than 2.5 f + b from the point and blocks either all or none of the rays to the point's plane within f
 // around it.
+// Not checked, for speed: pointers must not be NULL.
 float vplParaboloidMap_Factor(const vplParaboloidMap* map, vplVec3 position, vplVec3 normal);
 
 VPL_HEADER_END

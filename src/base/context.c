@@ -138,31 +138,67 @@ const char* vplContext_GetLastMessage(const vplContext* context)
 
 size_t vplContext_GetBytes(const vplContext* context)
 {
+    if (context == NULL) {
+        return 0;
+    }
+    if (context == NULL) {
+        return 0;
+    }
     return context->bytes;
 }
 
 void vplContext_SetMemoryLimit(vplContext* context, size_t bytes)
 {
+    if (context == NULL) {
+        return;
+    }
+    if (context == NULL) {
+        return;
+    }
     context->memoryLimit = bytes;
 }
 
 size_t vplContext_GetPeakBytes(const vplContext* context)
 {
+    if (context == NULL) {
+        return 0;
+    }
+    if (context == NULL) {
+        return 0;
+    }
     return context->peakBytes;
 }
 
 void vplContext_ResetPeakBytes(vplContext* context)
 {
+    if (context == NULL) {
+        return;
+    }
+    if (context == NULL) {
+        return;
+    }
     context->peakBytes = context->bytes;
 }
 
 vplIsa vplContext_GetIsa(const vplContext* context)
 {
+    if (context == NULL) {
+        return 0;
+    }
+    if (context == NULL) {
+        return 0;
+    }
     return context->isa;
 }
 
 int vplContext_GetWorkerCount(const vplContext* context)
 {
+    if (context == NULL) {
+        return 0;
+    }
+    if (context == NULL) {
+        return 0;
+    }
     return context->workerCount;
 }
 
@@ -188,9 +224,9 @@ static void makePrintable(char* text)
 
 void vplLogToStderr(void* user, vplLogLevel level, const char* message)
 {
-    static const char* const names[] = {"error", "warning", "note"};
-    if (level < VPL_LOG_INFO || user != NULL) {
-        fprintf(stderr, "libvpl: %s: %s\n", names[level], message);
+    if (message != NULL && (level < VPL_LOG_INFO || user != NULL)) {
+        const char* name = level == VPL_LOG_WARNING ? "warning" : level == VPL_LOG_INFO ? "note" : "error";
+        fprintf(stderr, "libvpl: %s: %s\n", name, message);
     }
 }
 
@@ -253,4 +289,18 @@ vplResult vplFail(const vplContext* context, vplResult result, const char* forma
     logArguments(context, VPL_LOG_ERROR, format, arguments);
     va_end(arguments);
     return result;
+}
+
+bool vplCheckPointers(const vplContext* context, const char* function, const char* names,
+                      const void* const* pointers, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const size_t length = strcspn(names, ",");
+        if (pointers[i] == NULL) {
+            vplFail(context, VPL_INVALID_ARGUMENT, "%s: %.*s is NULL", function, (int)length, names);
+            return false;
+        }
+        names += length + strspn(names + length, ", ");
+    }
+    return true;
 }

@@ -53,6 +53,34 @@ void vplLog(const vplContext* context, vplLogLevel level, const char* format, ..
 // Logs an error message and returns `result`, so that a check is one statement.
 vplResult vplFail(const vplContext* context, vplResult result, const char* format, ...) VPL_PRINTF(3, 4);
 
+// ---- arguments of public functions
+
+// The context of an object; NULL for NULL.
+#define CONTEXT_OF(object) ((object) != NULL ? (object)->context : NULL)
+
+// Returns VPL_INVALID_ARGUMENT from the calling function, with a sentence that names it and the argument, if one of up to
+// six pointers is NULL.
+#define REQUIRE(context, ...)                                                                                \
+    do {                                                                                                     \
+        const void* const required[] = {__VA_ARGS__};                                                        \
+        if (!vplCheckPointers((context), __func__, #__VA_ARGS__, required,                                   \
+                              sizeof required / sizeof required[0])) {                                       \
+            return VPL_INVALID_ARGUMENT;                                                                     \
+        }                                                                                                    \
+    } while (0)
+
+// The same for an array, which may be NULL if it has no elements. Negative counts are left to others.
+#define REQUIRE_ARRAY(context, array, count)                                                                 \
+    do {                                                                                                     \
+        if ((count) > 0) {                                                                                   \
+            REQUIRE(context, array);                                                                         \
+        }                                                                                                    \
+    } while (0)
+
+// False, after an error message, if a pointer is NULL. `names` are those of the pointers, with commas between them.
+bool vplCheckPointers(const vplContext* context, const char* function, const char* names,
+                      const void* const* pointers, size_t count);
+
 // ---- memory: 64-byte aligned, counted, overflow-checked
 
 // Memory for `count` elements of `size` bytes: uninitialised, or zeros. Logs and returns NULL when out of

@@ -216,6 +216,8 @@ static vplResult writeBeside(vplContext* context, const char* path, const void* 
 
 vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size)
 {
+    REQUIRE(context, context, path);
+    REQUIRE_ARRAY(context, bytes, size);
     struct stat info;
     bool exists = stat(path, &info) == 0;
     const int cause = errno;

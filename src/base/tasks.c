@@ -44,6 +44,9 @@ vplWatch vplSetWatch(vplContext* context, vplProgressFcn* progress, void* user, 
 
 void vplContext_SetProgress(vplContext* context, vplProgressFcn* progress, void* user)
 {
+    if (context == NULL) {
+        return;
+    }
     vplSetWatch(context, progress, user, 0);
 }
 

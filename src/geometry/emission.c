@@ -156,6 +156,8 @@ static vplResult fill(vplEmission* e, const vplEmitterDef* emitters)
 vplResult vplEmission_Create(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                              vplEmission** emissionOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, emissionOut);
+    REQUIRE_ARRAY(CONTEXT_OF(geometry), emitters, emitterCount);
     vplArena* arena = vplArena_Create(geometry->context);
     vplEmission* e = vplArena_AllocZero(arena, 1, sizeof *e);
     vplResult result = vplArena_Check(arena);
@@ -177,6 +179,9 @@ void vplEmission_Destroy(vplEmission* emission)
 
 double vplEmission_Area(const vplEmission* emission)
 {
+    if (emission == NULL) {
+        return 0;
+    }
     double area = 0;
     for (int i = emission->firstTriangle; i < emission->sourceCount; i++) {
         area += vplGeometry_TriangleArea(emission->geometry, emission->sources[i].triangle);
@@ -186,6 +191,9 @@ double vplEmission_Area(const vplEmission* emission)
 
 double vplEmission_Power(const vplEmission* emission)
 {
+    if (emission == NULL) {
+        return 0;
+    }
     return emission->cumulative[emission->sourceCount];
 }
 

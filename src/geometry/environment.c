@@ -30,8 +30,9 @@ static void placeOf(const vplEnvironment* e, vplVec3 direction, double* x, doubl
     const double right = e->cosine * dx - e->sine * dz, back = e->sine * dx + e->cosine * dz; // turned back
     const double across = 0.5 + vplAtan2(right, -back) / (2 * VPL_PI);
     const double level = sqrt(dx * dx + dz * dz), down = vplAtan2(level, (double)direction.y) / VPL_PI;
-    *x = across * e->width;
-    *y = down * e->height;
+    // A direction of NaN has a place, too: the pixels that are read must exist.
+    *x = isfinite(across) ? across * e->width : 0;
+    *y = isfinite(down) ? down * e->height : 0;
 }
 
 vplRgb vplEnvironment_Radiance(const vplEnvironment* e, vplVec3 direction)
@@ -199,6 +200,7 @@ static vplResult fill(vplContext* context, vplEnvironment* e, const vplEnvironme
 
 vplResult vplEnvironment_Create(const vplScene* scene, vplEnvironment** environmentOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, environmentOut);
     const vplEnvironmentDef* def = vplScene_GetEnvironment(scene);
     *environmentOut = NULL;
     if (def->type == VPL_ENVIRONMENT_NONE) {

@@ -156,6 +156,7 @@ static vplResult build(const vplScene* scene, vplGeometry* g)
 
 vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geometryOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, geometryOut);
     vplArena* arena = vplArena_Create(scene->context);
     vplGeometry* g = vplArena_AllocZero(arena, 1, sizeof *g);
     vplResult result = vplArena_Check(arena);
@@ -189,6 +190,9 @@ static vplGeometryBuilder reopen(const vplGeometry* g, const vplScene* scene)
 
 bool vplGeometry_CanUpdate(const vplGeometry* g, const vplScene* scene)
 {
+    if (g == NULL || scene == NULL) {
+        return false;
+    }
     bool same = g->scene == scene->identity && g->objectCount == scene->objectCount &&
                 g->materialCount == scene->materialCount && g->paint == NULL && scene->textureCount == 0 &&
                 g->environment == NULL && scene->environment.type == VPL_ENVIRONMENT_NONE;
@@ -202,39 +206,42 @@ bool vplGeometry_CanUpdate(const vplGeometry* g, const vplScene* scene)
     return same && memcmp(g->origin, scene->origin, sizeof g->origin) == 0;
 }
 
-vplResult vplGeometry_Update(vplGeometry* g, const vplScene* scene)
+vplResult vplGeometry_Update(vplGeometry* geometry, const vplScene* scene)
 {
-    const vplGeometryBuilder b = reopen(g, scene);
+    REQUIRE(CONTEXT_OF(geometry) ?: vplScene_GetContext(scene), geometry, scene);
+    const vplGeometryBuilder b = reopen(geometry, scene);
     bool moved = false;
-    g->formulaCount = 0;
-    fillMaterials(g, &b);
-    for (int i = 0; i < g->objectCount; i++) {
+    geometry->formulaCount = 0;
+    fillMaterials(geometry, &b);
+    for (int i = 0; i < geometry->objectCount; i++) {
         const vplObjectDef* def = &scene->objects[i];
         const vplPlacement before = b.objects[i].placement;
-        TRY(vplPlacement_Create(g->context, &def->transform, &b.objects[i].placement));
+        TRY(vplPlacement_Create(geometry->context, &def->transform, &b.objects[i].placement));
         moved = moved || memcmp(&before, &b.objects[i].placement, sizeof before) != 0;
         b.objects[i].material = def->material;
         b.objects[i].coplanar = false;
-        finishObject(g, &b, i);
+        finishObject(geometry, &b, i);
     }
-    summarise(g);
-    TRY(vplMarkCoplanar(g, b.objects));
-    if (moved && g->rayTree != NULL) {
-        vplBvh_Destroy(g->rayTree);
-        g->rayTree = NULL;
-        return vplGeometry_BuildRayTree(g);
+    summarise(geometry);
+    TRY(vplMarkCoplanar(geometry, b.objects));
+    if (moved && geometry->rayTree != NULL) {
+        vplBvh_Destroy(geometry->rayTree);
+        geometry->rayTree = NULL;
+        return vplGeometry_BuildRayTree(geometry);
     }
     return VPL_SUCCESS;
 }
 
 vplResult vplGeometry_BuildRayTree(vplGeometry* geometry)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry);
     return geometry->rayTree != NULL ? VPL_SUCCESS
                                      : vplBvh_Create(geometry, VPL_BRUTE_BLOCKS, &geometry->rayTree);
 }
 
 vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, geometryOut);
     vplGeometry* g;
     TRY(vplGeometry_CreateForRaster(scene, &g));
     const vplResult result = vplGeometry_BuildRayTree(g);
@@ -259,15 +266,24 @@ void vplGeometry_Destroy(vplGeometry* geometry)
 
 double vplGeometry_Area(const vplGeometry* geometry)
 {
+    if (geometry == NULL) {
+        return 0;
+    }
     return geometry->area;
 }
 
 double vplGeometry_MeanReflectance(const vplGeometry* geometry)
 {
+    if (geometry == NULL) {
+        return 0;
+    }
     return geometry->meanReflectance;
 }
 
 float vplGeometry_Diagonal(const vplGeometry* geometry)
 {
+    if (geometry == NULL) {
+        return 0;
+    }
     return vplLength(vplSub(geometry->boundsMax, geometry->boundsMin));
 }

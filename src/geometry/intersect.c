@@ -13,6 +13,7 @@
 
 vplResult vplPlacement_Create(vplContext* context, const vplMat4* transform, vplPlacement* placementOut)
 {
+    REQUIRE(context, context, transform, placementOut);
     vplFault fault = vplCheckTransform(transform);
     if (fault.field != NULL) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplPlacement_Create: transform %s", fault.text);

@@ -95,6 +95,7 @@ static void bisectFirst(const vplPatches* patches, int count, Heap* heap, vplPat
 vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, int count,
                             vplPatches** patchesOut)
 {
+    REQUIRE(CONTEXT_OF(patches), patches, priorities, patchesOut);
     TRY(check(patches, priorities, count));
     Heap heap = {.priorities = priorities};
     heap.patches = vplAlloc(patches->context, (size_t)patches->patchCount, sizeof *heap.patches);

@@ -313,6 +313,7 @@ static vplResult build(const Roots* roots, double length, const vplPatchDef* def
 
 vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def, vplPatches** patchesOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, def, patchesOut);
     TRY(checkDef(geometry, def));
     Roots roots = {.geometry = geometry, .count = geometry->triangleCount};
     double length = 0;
@@ -335,6 +336,9 @@ void vplPatches_Destroy(vplPatches* patches)
 
 vplPatchParts vplPatches_GetParts(const vplPatches* p, int patch)
 {
+    if (p == NULL || patch < 0 || patch >= p->patchCount) {
+        return (vplPatchParts){0};
+    }
     if (!vplPatches_IsGroup(p, patch)) {
         return (vplPatchParts){&p->patches[patch], 1};
     }
@@ -344,6 +348,9 @@ vplPatchParts vplPatches_GetParts(const vplPatches* p, int patch)
 
 double vplPatches_Area(const vplPatches* patches, int patch)
 {
+    if (patches == NULL || patch < 0 || patch >= patches->patchCount) {
+        return 0;
+    }
     if (vplPatches_IsGroup(patches, patch)) {
         return patches
             ->areaUpTo[patches->firstMember[patch + 1 - (patches->patchCount - patches->groupCount)] - 1];
@@ -358,6 +365,9 @@ double vplPatches_Area(const vplPatches* patches, int patch)
 // weight divided by the middle's share of the way to the corner.
 int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position)
 {
+    if (patches == NULL || triangle < 0 || triangle >= patches->geometry->triangleCount) {
+        return -1;
+    }
     const vplPatchNode* node = &patches->nodes[triangle];
     const vplTriangleCorners at = vplCornersOf(patches->positions, node->corners);
     double w[3];

@@ -79,6 +79,7 @@ static double meanLog(const uint32_t* bins, int first, double lit)
 
 vplResult vplImage_AutoExposure(const vplImage* image, float* stopsOut)
 {
+    REQUIRE(CONTEXT_OF(image), image, stopsOut);
     uint32_t* bins = vplAllocZero(image->context, BINS, sizeof *bins);
     if (bins == NULL) {
         return VPL_OUT_OF_MEMORY;

@@ -56,6 +56,9 @@ static void mapAcesRow(void* data, int row, int worker)
 
 void vplToneMap_Aces(vplImage* image)
 {
+    if (image == NULL) {
+        return;
+    }
     vplParallelFor(image->context, image->height, mapAcesRow, image);
 }
 
@@ -160,6 +163,9 @@ static void mapAgxRow(void* data, int row, int worker)
 
 void vplToneMap_Agx(vplImage* image)
 {
+    if (image == NULL) {
+        return;
+    }
     Agx agx = {.image = image};
     fillTables(&agx);
     vplParallelFor(image->context, image->height, mapAgxRow, &agx);

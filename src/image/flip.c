@@ -257,6 +257,7 @@ static vplResult prepare(Flip* f, vplArena* scratch, int workers, double ppd)
 
 vplResult vplImage_Flip(const vplImage* a, const vplImage* b, double ppd, double* meanOut, vplImage** mapOut)
 {
+    REQUIRE(CONTEXT_OF(a) ?: CONTEXT_OF(b), a, b, meanOut);
     vplContext* context = a->context;
     if (!(ppd >= VPL_MIN_PPD && ppd <= VPL_MAX_PPD)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "FLIP's pixels per degree are %g, must be in [%d, %d]",

@@ -97,6 +97,7 @@ static vplResult colour(const vplImage* map, float scale, vplColourFcn* colours,
 vplResult vplImage_HeatmapOf(const vplImage* a, const vplImage* b, const vplHeatmapDef* def,
                              vplImage** imageOut)
 {
+    REQUIRE(CONTEXT_OF(a) ?: CONTEXT_OF(b), a, b, imageOut);
     const vplHeatmapDef settings = def ? *def : vplDefaultHeatmapDef();
     vplImage* map;
     TRY(checkDef(a->context, &settings));
@@ -110,6 +111,7 @@ vplResult vplImage_HeatmapOf(const vplImage* a, const vplImage* b, const vplHeat
 
 vplResult vplImage_Heatmap(const vplImage* a, const vplImage* b, float scale, vplImage** imageOut)
 {
+    REQUIRE(CONTEXT_OF(a) ?: CONTEXT_OF(b), a, b, imageOut);
     vplHeatmapDef def = vplDefaultHeatmapDef();
     def.scale = scale;
     return vplImage_HeatmapOf(a, b, &def, imageOut);

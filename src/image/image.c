@@ -9,6 +9,7 @@
 
 vplResult vplImage_Create(vplContext* context, int width, int height, vplImage** imageOut)
 {
+    REQUIRE(context, context, imageOut);
     if (width < 1 || width > VPL_MAX_IMAGE_SIZE || height < 1 || height > VPL_MAX_IMAGE_SIZE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "image size is %dx%d, each side must be in [1, %d]",
                        width, height, VPL_MAX_IMAGE_SIZE);
@@ -38,6 +39,9 @@ void vplImage_Destroy(vplImage* image)
 
 uint64_t vplImage_Hash(const vplImage* image)
 {
+    if (image == NULL) {
+        return 0;
+    }
     const uint32_t size[2] = {(uint32_t)image->width, (uint32_t)image->height};
     uint64_t state = vplHashWords(0, size, 2);
     return vplHashFloats(state, image->pixels, 3 * (size_t)image->width * (size_t)image->height);
@@ -90,6 +94,9 @@ static const Format* findFormat(const char* path)
 
 bool vplImage_CanWrite(const char* path)
 {
+    if (path == NULL) {
+        return false;
+    }
     const Format* format = findFormat(path);
     return format != NULL && format->encode != NULL && (format->encode != vplEncodeExr || vplHasExr());
 }
@@ -129,6 +136,7 @@ static vplResult encode(const Format* format, const vplImage* image, const char*
 vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
                           uint8_t** bytesOut, size_t* sizeOut)
 {
+    REQUIRE(CONTEXT_OF(image), image, name, bytesOut, sizeOut);
     if (!vplImage_CanWrite(name)) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "%s: unknown picture format; the name must end in %s", name, vplImage_GetExtensions());
@@ -146,11 +154,15 @@ vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWrit
 
 void vplBytes_Free(vplContext* context, uint8_t* bytes)
 {
+    if (context == NULL || bytes == NULL) {
+        return;
+    }
     vplFree(context, bytes);
 }
 
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
 {
+    REQUIRE(CONTEXT_OF(image), image, path);
     uint8_t* bytes;
     size_t size;
     TRY(vplImage_Encode(image, path, options, &bytes, &size));
@@ -188,6 +200,8 @@ static vplResult checkLayer(const vplLayer* layer, const vplLayer* first)
 
 vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path)
 {
+    REQUIRE(NULL, path);
+    REQUIRE_ARRAY(NULL, layers, count);
     vplContext* context = layers[0].image->context;
     const Format* format = findFormat(path);
     if (format == NULL || format->encode != vplEncodeExr) {
@@ -208,6 +222,7 @@ vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* pa
 
 vplResult vplImage_ReadLayer(vplContext* context, const char* path, const char* name, vplImage** imageOut)
 {
+    REQUIRE(context, context, path, name, imageOut);
     const Format* format = findFormat(path);
     char* bytes;
     size_t size;
@@ -222,6 +237,7 @@ vplResult vplImage_ReadLayer(vplContext* context, const char* path, const char* 
 
 vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageOut)
 {
+    REQUIRE(context, context, path, imageOut);
     const Format* format = findFormat(path);
     if (format == NULL) {
         return vplFail(context, VPL_INVALID_ARGUMENT,

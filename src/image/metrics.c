@@ -107,6 +107,7 @@ static vplComparison compare(const vplImage* a, const vplImage* b, TrimmedSum* t
 
 vplResult vplImage_Compare(const vplImage* a, const vplImage* b, vplComparison* comparisonOut)
 {
+    REQUIRE(CONTEXT_OF(a) ?: CONTEXT_OF(b), a, b, comparisonOut);
     TRY(vplRequirePair(a, b));
     TrimmedSum trimmed = {.capacity = (size_t)a->width * (size_t)a->height / 1000};
     trimmed.heap = vplAlloc(a->context, trimmed.capacity, sizeof(double));

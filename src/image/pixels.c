@@ -126,24 +126,25 @@ static void copyRow(const float* values, const uint8_t* codes, int width, const 
     }
 }
 
-vplResult vplImage_CopyTo(const vplImage* image, const vplPixelsDef* p)
+vplResult vplImage_CopyTo(const vplImage* image, const vplPixelsDef* pixels)
 {
-    const ptrdiff_t size = (ptrdiff_t)sizeOf(p->format);
-    const ptrdiff_t pixelStride = p->pixelStride != 0 ? p->pixelStride : size;
-    const ptrdiff_t rowStride = p->rowStride != 0 ? p->rowStride : pixelStride * image->width;
-    TRY(checkPixels(image, p, pixelStride, rowStride));
+    REQUIRE(CONTEXT_OF(image), image, pixels);
+    const ptrdiff_t size = (ptrdiff_t)sizeOf(pixels->format);
+    const ptrdiff_t pixelStride = pixels->pixelStride != 0 ? pixels->pixelStride : size;
+    const ptrdiff_t rowStride = pixels->rowStride != 0 ? pixels->rowStride : pixelStride * image->width;
+    TRY(checkPixels(image, pixels, pixelStride, rowStride));
     uint8_t* codes = NULL;
-    if (FORMATS[p->format].codes) {
+    if (FORMATS[pixels->format].codes) {
         TRY(vplImage_RequireFinite(image, "vplImage_CopyTo"));
         vplWriteOptions display = vplDefaultWriteOptions();
-        display.exposure = p->exposure;
-        display.tonemap = p->tonemap;
+        display.exposure = pixels->exposure;
+        display.tonemap = pixels->tonemap;
         TRY(vplMakeCodes(image, &display, &codes));
     }
     for (int y = 0; y < image->height; y++) {
         const size_t at = 3 * (size_t)image->width * (size_t)y;
-        copyRow(image->pixels + at, codes != NULL ? codes + at : NULL, image->width, p, pixelStride,
-                (unsigned char*)p->first + rowStride * y);
+        copyRow(image->pixels + at, codes != NULL ? codes + at : NULL, image->width, pixels, pixelStride,
+                (unsigned char*)pixels->first + rowStride * y);
     }
     vplFree(image->context, codes);
     return VPL_SUCCESS;

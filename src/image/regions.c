@@ -8,6 +8,7 @@
 
 vplResult vplImage_Crop(const vplImage* image, int x, int y, int width, int height, vplImage** imageOut)
 {
+    REQUIRE(CONTEXT_OF(image), image, imageOut);
     bool inside = x >= 0 && y >= 0 && width >= 1 && height >= 1 && width <= image->width - x &&
                   height <= image->height - y;
     if (!inside) {
@@ -54,6 +55,7 @@ static int beginOf(int index, int count, int side)
 vplResult vplImage_CompareRegions(const vplImage* a, const vplImage* b, int columns, int rows,
                                   vplRegion* regionsOut)
 {
+    REQUIRE(CONTEXT_OF(a) ?: CONTEXT_OF(b), a, b, regionsOut);
     TRY(vplRequirePair(a, b));
     if (columns < 1 || columns > a->width || rows < 1 || rows > a->height) {
         return vplFail(a->context, VPL_INVALID_ARGUMENT,

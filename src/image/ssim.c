@@ -151,6 +151,7 @@ static double compareChannels(Ssim* s, vplContext* context)
 
 vplResult vplImage_Ssim(const vplImage* a, const vplImage* b, double* meanOut, vplImage** mapOut)
 {
+    REQUIRE(CONTEXT_OF(a) ?: CONTEXT_OF(b), a, b, meanOut);
     TRY(vplRequirePair(a, b));
     vplContext* context = a->context;
     vplArena* scratch = vplArena_Create(context);

@@ -113,6 +113,7 @@ static void sumBand(Reinhard* r, Sums* sums)
 
 vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def)
 {
+    REQUIRE(CONTEXT_OF(image), image);
     const vplReinhardDef settings = def ? *def : vplDefaultReinhardDef();
     TRY(checkReinhard(image->context, &settings));
     Reinhard r = {.image = image, .delta = settings.delta, .skipBlack = settings.skipBlack};

@@ -126,6 +126,9 @@ static void sampleLamp(const vplEmission* e, int first, int end, int n, double f
 
 int vplSampleAreaLights(const vplEmission* e, int count, vplShadeLight* out)
 {
+    if (e == NULL || out == NULL) {
+        return 0;
+    }
     const int first = e->firstTriangle, end = e->sourceCount;
     if (first >= end) {
         return 0;

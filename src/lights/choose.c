@@ -195,6 +195,7 @@ static vplResult choose(const vplLightSet* candidates, const float* contribution
 vplResult vplChooseLights(const vplLightSet* candidates, const float* contributions, double count,
                           const vplPlacementDef* def, vplLightSet** setOut)
 {
+    REQUIRE(CONTEXT_OF(candidates), candidates, contributions, def, setOut);
     vplContext* context = candidates->context;
     TRY(vplPlacementDef_Check(context, def));
     if (!(count >= 0)) {

@@ -216,6 +216,7 @@ static vplResult find(const vplLightSet* lights, const vplClusterDef* def, vplAr
 
 vplResult vplFindClusters(const vplLightSet* lights, const vplClusterDef* def, vplLightClusters** clustersOut)
 {
+    REQUIRE(CONTEXT_OF(lights), lights, def, clustersOut);
     TRY(checkDef(lights, def));
     vplArena* scratch = vplArena_Create(lights->context);
     const vplResult result = find(lights, def, scratch, clustersOut);

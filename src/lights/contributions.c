@@ -101,6 +101,7 @@ static vplResult measureAll(Measuring* m, vplArena* scratch, int64_t* raysOut)
 vplResult vplMeasureLights(const vplGeometry* geometry, const vplLightSet* set, const vplPlacementDef* def,
                            float* contributionsOut, int64_t* raysOut)
 {
+    REQUIRE(CONTEXT_OF(geometry) ?: CONTEXT_OF(set), geometry, set, def, contributionsOut);
     Measuring m = {.geometry = geometry, .set = set, .def = def, .contributions = contributionsOut};
     int64_t rays = 0;
     TRY(vplPlacementDef_Check(geometry->context, def));

@@ -147,6 +147,7 @@ static vplResult check(const vplGeometry* geometry, const vplNextBounceDef* def)
 vplResult vplShootNextBounce(const vplGeometry* geometry, const vplLightSet* lights,
                              const vplNextBounceDef* def, vplLightSet** setOut)
 {
+    REQUIRE(CONTEXT_OF(geometry) ?: CONTEXT_OF(lights), geometry, lights, def, setOut);
     Shooting s = {.geometry = geometry, .from = lights, .def = def, .shift = {0.5f, 0, 0}};
     vplLightArrays arrays;
     vplLightSet* set;

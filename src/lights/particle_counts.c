@@ -38,6 +38,7 @@ static vplResult checkPass(const vplContext* context, const vplParticlePass* pas
 vplResult vplCountParticles(vplContext* context, const vplParticlePass* pass, int* counts, int capacity,
                             vplStepTotals* totalsOut)
 {
+    REQUIRE(context, context, pass, totalsOut);
     TRY(checkPass(context, pass));
     double before = (double)pass->first, after = (double)(pass->first + pass->count);
     int64_t total = 0, count = pass->count;

@@ -232,6 +232,8 @@ static vplResult simulate(Simulation* s, int lightCount, vplArena* scratch, vplL
 vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                                const vplParticleDef* def, vplLightSet** setOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, def, setOut);
+    REQUIRE_ARRAY(CONTEXT_OF(geometry), emitters, emitterCount);
     vplContext* context = geometry->context;
     const vplParticlePass pass = passOf(def);
     vplStepTotals totals;

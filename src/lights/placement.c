@@ -97,6 +97,8 @@ static vplResult choose(const vplGeometry* geometry, const vplParticlePass* plai
 vplResult vplPlaceLights(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                          const vplParticleDef* particles, const vplPlacementDef* def, vplLightSet** setOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, particles, def, setOut);
+    REQUIRE_ARRAY(CONTEXT_OF(geometry), emitters, emitterCount);
     vplContext* context = geometry->context;
     const vplParticlePass plain = {0, particles->particleCount, particles->reflectivity};
     vplStepTotals totals;

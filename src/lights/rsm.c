@@ -185,6 +185,7 @@ static vplResult draw(Drawing* d, vplProgressFcn* progress, void* user)
 vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflectiveMapDef* def,
                                   vplProgressFcn* progress, void* user, vplReflectiveMap** mapOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, def, mapOut);
     vplContext* context = geometry->context;
     if (def->cookie != RSM_COOKIE) {
         return vplFail(context, VPL_INVALID_ARGUMENT,

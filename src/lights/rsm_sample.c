@@ -154,6 +154,8 @@ static vplResult fillSet(Sampling* s, const vplLightArrays* arrays, vplLightSet*
 vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflectiveMap* const* maps,
                                   int mapCount, const vplRsmSampleDef* def, vplLightSet** setOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, def, setOut);
+    REQUIRE_ARRAY(CONTEXT_OF(geometry), maps, mapCount);
     vplContext* context = geometry->context;
     if (def->cookie != RSM_SAMPLE_COOKIE) {
         return vplFail(context, VPL_INVALID_ARGUMENT,

@@ -16,6 +16,9 @@ vplVec3 vplSkyLight_Position(const vplEmission* e, vplVec3 towards)
 // Source: Ricardo Marques and others, Spherical Fibonacci Point Sets for Illumination Integrals, CGF 2013.
 int vplSampleSky(const vplEmission* e, int count, vplShadeLight* out)
 {
+    if (e == NULL || out == NULL) {
+        return 0;
+    }
     const vplEnvironment* environment = e->geometry->environment;
     if (e->environment < 0) {
         return 0;

@@ -71,6 +71,7 @@ static void measureChunk(void* data, int chunk, int worker)
 
 vplResult vplMeasureUse(const vplGeometry* geometry, const vplLightSet* set, int rayCount, float* useOut)
 {
+    REQUIRE(CONTEXT_OF(geometry) ?: CONTEXT_OF(set), geometry, set, useOut);
     if (rayCount < 1 || rayCount > VPL_MAX_USE_RAYS) {
         return vplFail(geometry->context, VPL_INVALID_ARGUMENT, "rayCount is %d, must be in [1, %d]",
                        rayCount, VPL_MAX_USE_RAYS);
@@ -95,6 +96,9 @@ static bool isKept(const vplVirtualLight* v, float use, float shift)
 
 double vplCountUseful(const vplLightSet* set, const float* use)
 {
+    if (set == NULL || use == NULL) {
+        return 0;
+    }
     double sum = 0;
     for (int i = 0; i < set->lightCount; i++) {
         sum += (double)chanceOf(use[i]);
@@ -104,6 +108,7 @@ double vplCountUseful(const vplLightSet* set, const float* use)
 
 vplResult vplKeepUseful(const vplLightSet* set, const float* use, uint64_t shift, vplLightSet** setOut)
 {
+    REQUIRE(CONTEXT_OF(set), set, use, setOut);
     const float shifted = shift ? vplUnitFloat(vplRandomAt(shift, LOT_STREAM, 0).v[0]) : 0;
     vplLightArrays arrays;
     vplLightSet* kept;

@@ -24,6 +24,7 @@ vplFramebuffer vplDefaultFramebuffer(int width, int height)
 
 vplResult vplRaster_Create(vplContext* context, const vplFramebuffer* framebuffer, vplRaster** rasterOut)
 {
+    REQUIRE(context, context, framebuffer, rasterOut);
     if (framebuffer->cookie != FRAMEBUFFER_COOKIE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplFramebuffer was not made by vplDefaultFramebuffer");
     }
@@ -168,6 +169,7 @@ static vplResult addCommand(vplRaster* raster, vplCommand command)
 
 vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline)
 {
+    REQUIRE(CONTEXT_OF(raster), raster, mesh, pipeline);
     vplCommand command = {0};
     TRY(checkDraw(raster->context, mesh, pipeline));
     if (pipeline->ownerTest && raster->framebuffer.triangles != NULL) {
@@ -190,6 +192,7 @@ vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeli
 
 vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data)
 {
+    REQUIRE(CONTEXT_OF(raster), raster, fcn);
     return addCommand(raster, (vplCommand){.shaded = -1, .tileFcn = fcn, .data = data});
 }
 
@@ -225,6 +228,7 @@ static vplResult runAll(vplRaster* const* rasters, int count, vplProgressFcn* pr
 vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user,
                            vplRasterStats* statsOut)
 {
+    REQUIRE_ARRAY(NULL, rasters, count);
     const vplResult result = runAll(rasters, count, progress, user);
     for (int i = 0; i < count; i++) {
         vplArena_Destroy(rasters[i]->run);
@@ -238,11 +242,15 @@ vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn*
 
 vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user, vplRasterStats* statsOut)
 {
+    REQUIRE(CONTEXT_OF(raster), raster);
     return vplRaster_RunAll(&raster, 1, progress, user, statsOut);
 }
 
 void vplRasterStats_Add(vplRasterStats* sum, const vplRasterStats* stats)
 {
+    if (sum == NULL || stats == NULL) {
+        return;
+    }
     sum->drawCalls += stats->drawCalls;
     sum->fragments += stats->fragments;
     sum->trianglesIn += stats->trianglesIn;

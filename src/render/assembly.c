@@ -27,6 +27,7 @@ struct vplAssembly {
 
 vplResult vplAssembly_Create(vplContext* context, vplAssembly** assemblyOut)
 {
+    REQUIRE(context, context, assemblyOut);
     vplAssembly* a = vplAllocZero(context, 1, sizeof *a);
     if (a == NULL) {
         return VPL_OUT_OF_MEMORY;
@@ -126,6 +127,9 @@ static void addPasses(vplAssembly* a, int band)
 
 bool vplAssembly_Has(const vplAssembly* a, int index)
 {
+    if (a == NULL) {
+        return false;
+    }
     const vplPieceGrid* g = &a->first.grid;
     return index >= 0 && index < g->count &&
            (index % g->passes < a->next[index / g->passes] || a->waiting[index].values != NULL);
@@ -164,6 +168,8 @@ static vplResult take(vplAssembly* a, const vplPieceHeader* h, const uint8_t* by
 vplResult vplAssembly_Add(vplAssembly* a, const uint8_t* bytes, size_t size, const char* name,
                           size_t* usedOut)
 {
+    REQUIRE(CONTEXT_OF(a), a, name, usedOut);
+    REQUIRE_ARRAY(CONTEXT_OF(a), bytes, size);
     vplPieceHeader h;
     const bool opens = a->first.grid.count == 0;
     TRY(vplPiece_Read(a->context, bytes, size, name, &h));
@@ -181,11 +187,17 @@ vplResult vplAssembly_Add(vplAssembly* a, const uint8_t* bytes, size_t size, con
 
 vplPieceGrid vplAssembly_GetGrid(const vplAssembly* a)
 {
+    if (a == NULL) {
+        return (vplPieceGrid){0};
+    }
     return a->first.grid;
 }
 
 int vplAssembly_CountMissing(const vplAssembly* a)
 {
+    if (a == NULL) {
+        return 0;
+    }
     return a->missing;
 }
 
@@ -208,6 +220,7 @@ static vplResult failIncomplete(const vplAssembly* a)
 
 vplResult vplAssembly_GetImage(const vplAssembly* a, vplImage** imageOut)
 {
+    REQUIRE(CONTEXT_OF(a), a, imageOut);
     const vplPieceGrid* g = &a->first.grid;
     vplImage* image;
     if (g->count == 0 || a->missing > 0) {

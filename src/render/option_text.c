@@ -214,6 +214,7 @@ vplResult vplRenderOptions_SetAll(vplRenderOptions* options, const char* words)
 {
     char name[64], value[64];
     int length;
+    REQUIRE(NULL, options, words);
     for (; sscanf(words, " --%63s %63s%n", name, value, &length) == 2; words += length) {
         TRY(vplRenderOptions_Set(options, name, value));
     }
@@ -222,8 +223,13 @@ vplResult vplRenderOptions_SetAll(vplRenderOptions* options, const char* words)
 
 vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, const char* value)
 {
-    const Setting s = {options, vplFindOption(name), value};
+    REQUIRE(NULL, options);
     options->problem[0] = 0;
+    if (name == NULL || value == NULL) {
+        snprintf(options->problem, sizeof options->problem, "%s is NULL", name == NULL ? "name" : "value");
+        return VPL_INVALID_ARGUMENT;
+    }
+    const Setting s = {options, vplFindOption(name), value};
     if (s.option == NULL || s.option->kind == VPL_OPTION_PART) {
         snprintf(options->problem, sizeof options->problem, "there is no option \"%.60s\"", name);
         return VPL_INVALID_ARGUMENT;
@@ -290,6 +296,7 @@ static void writeBits(const vplOption* option, int bits, char text[64])
 
 vplResult vplRenderOptions_Get(const vplRenderOptions* o, const char* name, char* textOut, size_t size)
 {
+    REQUIRE(NULL, o, name, textOut);
     const vplOption* option = vplFindOption(name);
     char text[64] = "";
     if (option == NULL || option->kind == VPL_OPTION_PART) {
@@ -336,6 +343,9 @@ vplResult vplRenderOptions_Get(const vplRenderOptions* o, const char* name, char
 
 bool vplRenderOptions_IsUsed(const vplRenderOptions* o, const char* name, char* reasonOut, size_t size)
 {
+    if (o == NULL || name == NULL) {
+        return false;
+    }
     const vplOption* option = vplFindOption(name);
     const int pipelines = option != NULL ? option->users & ~VPL_USE_ALL : 0;
     const char* against = NULL;

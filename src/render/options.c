@@ -33,6 +33,9 @@ vplRenderOptions vplDefaultRenderOptions(void)
 
 vplRenderOptions* vplRenderOptions_Create(vplContext* context)
 {
+    if (context == NULL) {
+        return NULL;
+    }
     vplRenderOptions* options = vplAlloc(context, 1, sizeof *options);
     if (options != NULL) {
         *options = vplDefaultRenderOptions();
@@ -42,28 +45,39 @@ vplRenderOptions* vplRenderOptions_Create(vplContext* context)
 
 void vplRenderOptions_Destroy(vplContext* context, vplRenderOptions* options)
 {
-    vplFree(context, options);
+    if (context != NULL) {
+        vplFree(context, options);
+    }
 }
 
 void vplRenderOptions_SetProgress(vplRenderOptions* options, vplProgressFcn* progress, void* user)
 {
+    if (options == NULL) {
+        return;
+    }
     options->progress = progress;
     options->progressUser = user;
 }
 
 const char* vplRenderOptions_GetProblem(const vplRenderOptions* options)
 {
-    return options->problem;
+    return options != NULL ? options->problem : "";
 }
 
 const vplOption* vplGetOptions(int* countOut)
 {
+    if (countOut == NULL) {
+        return NULL;
+    }
     *countOut = OPTION_COUNT;
     return OPTIONS;
 }
 
 const vplOption* vplFindOption(const char* name)
 {
+    if (name == NULL) {
+        return NULL;
+    }
     for (int i = 0; i < OPTION_COUNT; i++) {
         if (strcmp(OPTIONS[i].name, name) == 0) {
             return &OPTIONS[i];

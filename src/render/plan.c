@@ -284,6 +284,7 @@ vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMa
 vplResult vplPlan_Create(const vplScene* scene, const vplRenderOptions* options, const vplMachine* machine,
                          vplPlan** planOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, options, planOut);
     vplHistory* history;
     TRY(vplHistory_Create(vplScene_GetContext(scene), &history));
     vplRunner runner = vplRunner_Begin(scene, history);

@@ -125,6 +125,7 @@ static vplResult write(vplContext* context, Writer w, const char* path)
 
 vplResult vplPlan_Write(const vplPlan* plan, const vplScene* scene, const char* path)
 {
+    REQUIRE(vplScene_GetContext(scene), plan, scene, path);
     const vplRenderOptions o = vplReplayOptions(plan);
     return write(vplScene_GetContext(scene), describe(scene, plan, &o, (Writer){NULL, false}), path);
 }
@@ -143,6 +144,7 @@ static void fixEnd(const vplShown* shown, vplRenderOptions* o)
 
 vplResult vplRenderer_WritePlan(vplRenderer* r, const char* path)
 {
+    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, path);
     const vplScene* scene = r->runner.run.scene;
     const vplShown shown = vplRenderer_Shown(r);
     if (shown.passes == 0) {
@@ -234,6 +236,7 @@ static vplResult readPlan(const vplJsonFile* file, vplRenderOptions* o, uint64_t
 vplResult vplRenderOptions_Load(vplContext* context, const char* path, vplRenderOptions* options,
                                 uint64_t* sceneHashOut)
 {
+    REQUIRE(context, context, path, options);
     vplJsonFile file;
     vplRenderOptions o = *options;
     uint64_t hash = 0;

@@ -156,6 +156,9 @@ static void putStages(Text* t, const vplPlan* p)
 
 size_t vplPlan_Describe(const vplPlan* p, char* text, size_t size)
 {
+    if (p == NULL || (text == NULL && size > 0)) {
+        return 0;
+    }
     Text t = {text, size, 0};
     char method[32] = "", pipeline[32] = "";
     vplRenderOptions_Get(&p->options, "method", method, sizeof method);

@@ -52,6 +52,10 @@ static void sayError(const vplRenderer* r, double asked)
 vplResult vplRenderer_Finish(vplRenderer* r, vplImage** imageOut, vplLayers** layersOut,
                              vplRenderStats* statsOut)
 {
+    REQUIRE(NULL, r);
+    if (layersOut == NULL) {
+        REQUIRE(r->runner.run.context, imageOut);
+    }
     TRY(layersOut != NULL ? vplRenderer_GetLayers(r, layersOut, statsOut) : takeImage(r, imageOut, statsOut));
     sayError(r, r->asked.stop.maxError);
     return VPL_SUCCESS;
@@ -75,6 +79,7 @@ static vplResult render(const vplScene* scene, const vplRenderOptions* options, 
 vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
                     vplRenderStats* statsOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, options, imageOut);
     vplRenderOptions o = *options;
     o.output.aovs = 0;
     return render(scene, &o, imageOut, NULL, statsOut);
@@ -83,6 +88,7 @@ vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplI
 vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options, vplLayers** layersOut,
                           vplRenderStats* statsOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, options, layersOut);
     return render(scene, options, NULL, layersOut, statsOut);
 }
 
@@ -116,6 +122,8 @@ static vplResult copyLayers(const vplLayers* layers, int aovs, const vplTarget* 
 vplResult vplRenderTo(const vplScene* scene, const vplRenderOptions* options, const vplTarget* targets,
                       int targetCount, int* passesOut, vplRenderStats* statsOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, options);
+    REQUIRE_ARRAY(vplScene_GetContext(scene), targets, targetCount);
     vplRenderOptions o = *options;
     vplLayers* layers = NULL;
     vplRenderer* r;
@@ -165,6 +173,7 @@ static vplResult openForStages(const vplScene* scene, const vplRenderOptions* op
 
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, options, setOut);
     vplMethod method = options->method == VPL_METHOD_AUTO ? vplFirstMethodFor(options) : options->method;
     const bool ssvp = method == VPL_METHOD_SSVP;
     const vplStageId stage = ssvp ? VPL_STAGE_CLUSTERED_LIGHTS : VPL_STAGE_PARTICLES;
@@ -188,6 +197,7 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
 vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float exposure, const char* path,
                   vplRenderStats* statsOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, options, path);
     const float scale = (float)(vplPow(2, (double)exposure) / VPL_PI); // radiance, as pictures have it
     vplRenderer* r;
     TRY(openForStages(scene, options, VPL_METHOD_RADIOSITY, &r));

@@ -110,6 +110,7 @@ static bool watch(void* user, double fraction)
 vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
                              vplRenderer** rendererOut)
 {
+    REQUIRE(vplScene_GetContext(scene), scene, options, rendererOut);
     vplContext* context = vplScene_GetContext(scene);
     const double start = vplClockMs(), cpuStart = vplCpuMs();
     vplHistory* history;
@@ -290,6 +291,7 @@ static vplResult review(vplRenderer* r, bool* doneOut)
 
 vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
 {
+    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, doneOut);
     const double begin = vplClockMs();
     if (r->stamp != r->runner.run.scene->stamp) {
         return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,

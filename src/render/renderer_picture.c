@@ -117,11 +117,17 @@ vplShown vplRenderer_Shown(const vplRenderer* r)
 
 int vplRenderer_GetPassCount(const vplRenderer* r)
 {
+    if (r == NULL) {
+        return 0;
+    }
     return vplRenderer_Shown(r).passes;
 }
 
 const vplPlan* vplRenderer_GetPlan(const vplRenderer* r)
 {
+    if (r == NULL) {
+        return NULL;
+    }
     return vplRenderer_Shown(r).plan;
 }
 
@@ -151,6 +157,7 @@ static vplResult takePicture(vplRenderer* r, vplImage** imageOut)
 
 vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
+    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, imageOut);
     vplImage* image = NULL;
     if (!vplRenderer_HasPicture(r)) {
         return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
@@ -170,6 +177,7 @@ vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderSta
 
 vplResult vplRenderer_GetLayers(vplRenderer* r, vplLayers** layersOut, vplRenderStats* statsOut)
 {
+    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, layersOut);
     vplImage *picture = NULL, *direct = NULL;
     vplLayers* layers;
     TRY(vplRenderer_GetImage(r, &picture, NULL));

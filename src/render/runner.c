@@ -14,6 +14,7 @@
 
 vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut)
 {
+    REQUIRE(context, context, historyOut);
     vplHistory* history = vplAllocZero(context, 1, sizeof *history);
     if (history == NULL) {
         return VPL_OUT_OF_MEMORY;

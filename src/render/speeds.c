@@ -13,6 +13,7 @@
 
 vplResult vplContext_SetSpeeds(vplContext* context, const vplSpeeds* speeds)
 {
+    REQUIRE(context, context);
     vplSpeeds copy = speeds != NULL ? *speeds : vplUsualSpeeds();
     bool good = copy.threads >= 0 && isfinite(copy.threads);
     for (int i = 0; i < VPL_SPEED_COUNT; i++) {
@@ -267,6 +268,7 @@ static vplResult build(const vplContextDef* def, bool plain, vplContext** contex
 
 vplResult vplSpeeds_Measure(vplContext* context, vplSpeeds* speedsOut)
 {
+    REQUIRE(context, context, speedsOut);
     vplContextDef def = context->def, alone = context->def;
     vplContext* contexts[2] = {NULL, NULL};
     const double end = vplClockMs() + LONGEST;

@@ -19,11 +19,17 @@ vplEnvironmentDef vplDefaultEnvironmentDef(void)
 
 const vplEnvironmentDef* vplScene_GetEnvironment(const vplScene* scene)
 {
+    if (scene == NULL) {
+        return NULL;
+    }
     return &scene->environment;
 }
 
 int vplScene_GetSun(const vplScene* scene)
 {
+    if (scene == NULL) {
+        return -1;
+    }
     return scene->sun - 1;
 }
 
@@ -111,6 +117,7 @@ static vplResult copyPicture(vplScene* scene, const vplSky* sky, vplEnvironmentD
 
 vplResult vplScene_SetEnvironment(vplScene* scene, const vplEnvironmentDef* def)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     if (def->cookie != COOKIE) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                        "vplEnvironmentDef was not made by its default function");
@@ -157,6 +164,7 @@ static vplResult repair(const vplScene* scene, const char* path, vplImage* image
 
 vplResult vplScene_LoadEnvironment(vplScene* scene, const char* path, const vplEnvironmentDef* def)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, path, def);
     vplImage* image;
     vplEnvironmentDef read = *def;
     TRY(vplImage_Read(scene->context, path, &image));

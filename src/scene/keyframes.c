@@ -9,11 +9,17 @@
 
 vplCameraKey vplMakeCameraKey(const vplCameraDef* def, double frame)
 {
+    if (def == NULL) {
+        return (vplCameraKey){0};
+    }
     return (vplCameraKey){frame, def->eye, def->target, def->up, def->fovY};
 }
 
 vplEmitterKey vplMakeEmitterKey(const vplEmitterDef* def, double frame)
 {
+    if (def == NULL) {
+        return (vplEmitterKey){0};
+    }
     return (vplEmitterKey){frame, def->position, def->direction, def->intensity};
 }
 
@@ -84,8 +90,18 @@ static Interval findInterval(const vplTrack* track, size_t size, double frame)
     return (Interval){low, low + 1, (frame - from) / (frameOf(track->keys, size, low + 1) - from)};
 }
 
+static vplResult checkIndex(const vplScene* scene, const char* type, int index, int count)
+{
+    return index >= 0 && index < count
+               ? VPL_SUCCESS
+               : vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                         "%s: index is %d, must be one of the scene's %d", type, index, count);
+}
+
 vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vplCameraDef* defOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, defOut);
+    TRY(checkIndex(scene, "camera", index, vplScene_GetCameraCount(scene)));
     const vplTrack* track = &scene->cameras[index].track;
     vplCameraDef def = scene->cameras[index].def;
     if (track->count > 0) {
@@ -106,6 +122,8 @@ vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vp
 
 vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, defOut);
+    TRY(checkIndex(scene, "emitter", index, vplScene_GetEmitterCount(scene)));
     const vplTrack* track = &scene->emitters[index].track;
     vplEmitterDef def = scene->emitters[index].def;
     if (track->count > 0) {
@@ -127,14 +145,24 @@ vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, v
 
 const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut)
 {
-    *countOut = scene->cameras[index].track.count;
-    return scene->cameras[index].track.keys;
+    const vplTrack* track = scene != NULL && index >= 0 && index < vplScene_GetCameraCount(scene)
+                                ? &scene->cameras[index].track
+                                : NULL;
+    if (countOut != NULL) {
+        *countOut = track != NULL ? track->count : 0;
+    }
+    return track != NULL ? track->keys : NULL;
 }
 
 const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut)
 {
-    *countOut = scene->emitters[index].track.count;
-    return scene->emitters[index].track.keys;
+    const vplTrack* track = scene != NULL && index >= 0 && index < vplScene_GetEmitterCount(scene)
+                                ? &scene->emitters[index].track
+                                : NULL;
+    if (countOut != NULL) {
+        *countOut = track != NULL ? track->count : 0;
+    }
+    return track != NULL ? track->keys : NULL;
 }
 
 static vplFault checkCameraKey(const void* def, const void* key)
@@ -157,14 +185,6 @@ typedef struct Keys {
     int count;
     vplFault (*check)(const void* def, const void* key);
 } Keys;
-
-static vplResult checkIndex(const vplScene* scene, const char* type, int index, int count)
-{
-    return index >= 0 && index < count
-               ? VPL_SUCCESS
-               : vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                         "%s: index is %d, must be one of the scene's %d", type, index, count);
-}
 
 static vplResult checkKeys(const vplScene* scene, const Keys* k, const void* def)
 {
@@ -200,6 +220,8 @@ static vplResult setKeys(vplScene* scene, const Keys* k, const void* def, vplTra
 
 vplResult vplScene_SetCameraPath(vplScene* scene, int index, const vplCameraKey* keys, int count)
 {
+    REQUIRE(CONTEXT_OF(scene), scene);
+    REQUIRE_ARRAY(CONTEXT_OF(scene), keys, count);
     const Keys k = {"vplCameraKey", keys, sizeof *keys, count, checkCameraKey};
     TRY(checkIndex(scene, k.type, index, scene->cameraCount));
     return setKeys(scene, &k, &scene->cameras[index].def, &scene->cameras[index].track);
@@ -207,6 +229,8 @@ vplResult vplScene_SetCameraPath(vplScene* scene, int index, const vplCameraKey*
 
 vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKey* keys, int count)
 {
+    REQUIRE(CONTEXT_OF(scene), scene);
+    REQUIRE_ARRAY(CONTEXT_OF(scene), keys, count);
     const Keys k = {"vplEmitterKey", keys, sizeof *keys, count, checkEmitterKey};
     TRY(checkIndex(scene, k.type, index, scene->emitterCount));
     return setKeys(scene, &k, &scene->emitters[index].def, &scene->emitters[index].track);

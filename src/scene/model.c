@@ -27,6 +27,9 @@ vplModelKind vplModelKindOf(const char* path)
 
 bool vplIsModelPath(const char* path)
 {
+    if (path == NULL) {
+        return false;
+    }
     return vplModelKindOf(path) != VPL_MODEL_NONE;
 }
 
@@ -82,6 +85,7 @@ static vplResult loadMesh(vplScene* scene, const char* path, vplReadMeshFcn* rea
 
 vplResult vplScene_LoadMesh(vplScene* scene, const char* path, int* indexOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, path);
     switch (vplModelKindOf(path)) {
     case VPL_MODEL_OBJ:
         return vplScene_LoadObj(scene, path, indexOut);
@@ -129,6 +133,7 @@ static vplResult addObjects(vplScene* scene, const char* path, const vplObjectDe
 vplResult vplScene_LoadModel(vplScene* scene, const char* path, const vplObjectDef* def, int* firstOut,
                              int* countOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, path, def);
     vplModel model = {.arena = vplArena_Create(scene->context)};
     const int materials = scene->materialCount, meshes = scene->meshCount, objects = scene->objectCount;
     const vplResult result = vplIsModelPath(path) ? addObjects(scene, path, def, &model)

@@ -215,6 +215,7 @@ static vplResult loadObj(vplScene* scene, vplObj* obj, const char* path, vplObjM
 
 vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, path);
     vplArena* scratch = vplArena_Create(scene->context);
     vplObj obj = {.scratch = scratch,
                   .materials = {.names = {.index = {.arena = scratch}}},

@@ -59,6 +59,7 @@ vplEmitterDef vplDefaultEmitterDef(void)
 
 vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
 {
+    REQUIRE(context, context, sceneOut);
     vplArena* arena = vplArena_Create(context);
     vplScene* scene = vplArena_AllocZero(arena, 1, sizeof *scene);
     vplResult result = vplArena_Check(arena);
@@ -170,6 +171,7 @@ static vplResult copyName(vplScene* scene, const char** name)
 
 vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3])
 {
+    REQUIRE(CONTEXT_OF(scene), scene, origin);
     for (int i = 0; i < 3; i++) {
         if (!(fabs(origin[i]) <= VPL_MAX_MAGNITUDE_DOUBLE)) {
             return vplFail(scene->context, VPL_INVALID_ARGUMENT,
@@ -184,6 +186,9 @@ vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3])
 
 void vplScene_GetOrigin(const vplScene* scene, double originOut[3])
 {
+    if (scene == NULL || originOut == NULL) {
+        return;
+    }
     memcpy(originOut, scene->origin, sizeof scene->origin);
 }
 
@@ -195,6 +200,7 @@ vplResult vplScene_CheckCamera(const vplScene* scene, const char* subject, const
 
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     const vplCamera camera = {.def = *def};
     TRY(vplScene_CheckCamera(scene, "vplCameraDef.", def));
     return append(scene, LIST(scene, camera, cameras), &camera, indexOut);
@@ -202,6 +208,7 @@ vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* inde
 
 vplResult vplScene_AddTexture(vplScene* scene, const vplTextureDef* def, int* indexOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(requireCookie(scene, "vplTextureDef", def->cookie == TEXTURE_COOKIE));
     TRY(vplScene_ReportFault(scene, "vplTextureDef.", vplCheckTexture(def)));
     vplSceneTexture texture = {.def = *def};
@@ -233,6 +240,7 @@ static vplResult checkMaterial(const vplScene* scene, const vplMaterialDef* def,
 
 vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(checkMaterial(scene, def, scene->materialCount));
     vplMaterialDef copy = *def;
     TRY(copyName(scene, &copy.name));
@@ -265,6 +273,7 @@ static void* copyArray(vplArena* arena, const void* from, int count, size_t size
 
 vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(requireCookie(scene, "vplMeshDef", def->cookie == MESH_COOKIE));
     TRY(vplScene_ReportFault(scene, "vplMeshDef.", vplCheckMesh(def, scene->materialCount)));
     vplArena* arena = vplArena_Create(scene->context);
@@ -290,6 +299,7 @@ vplResult vplScene_CheckObjectMaterial(const vplScene* scene, vplObjectType type
 
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(requireCookie(scene, "vplObjectDef", def->cookie == OBJECT_COOKIE));
     TRY(vplScene_ReportFault(scene, "vplObjectDef.", vplCheckTransform(&def->transform)));
     if (def->type != VPL_OBJECT_QUAD && def->type != VPL_OBJECT_BOX && def->type != VPL_OBJECT_MESH) {
@@ -310,6 +320,7 @@ vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* inde
 
 vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* indexOut)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     const vplEmitter emitter = {.def = *def};
     TRY(requireCookie(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE));
     TRY(vplScene_ReportFault(scene, "vplEmitterDef.", vplCheckEmitter(def)));
@@ -328,6 +339,7 @@ static vplResult checkIndex(const vplScene* scene, const char* what, int index, 
 
 vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(checkIndex(scene, "camera", index, scene->cameraCount));
     TRY(vplScene_CheckCamera(scene, "vplCameraDef.", def));
     TRY(vplScene_SetCameraPath(scene, index, NULL, 0));
@@ -338,6 +350,7 @@ vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def
 
 vplResult vplScene_SetEmitter(vplScene* scene, int index, const vplEmitterDef* def)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(checkIndex(scene, "emitter", index, scene->emitterCount));
     TRY(requireCookie(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE));
     TRY(vplScene_ReportFault(scene, "vplEmitterDef.", vplCheckEmitter(def)));
@@ -349,6 +362,7 @@ vplResult vplScene_SetEmitter(vplScene* scene, int index, const vplEmitterDef* d
 
 vplResult vplScene_SetMaterial(vplScene* scene, int index, const vplMaterialDef* def)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(checkIndex(scene, "material", index, scene->materialCount));
     TRY(checkMaterial(scene, def, index));
     vplMaterialDef copy = *def;
@@ -365,6 +379,7 @@ vplResult vplScene_SetMaterial(vplScene* scene, int index, const vplMaterialDef*
 
 vplResult vplScene_SetTransform(vplScene* scene, int object, const vplMat4* transform)
 {
+    REQUIRE(CONTEXT_OF(scene), scene, transform);
     TRY(checkIndex(scene, "object", object, scene->objectCount));
     TRY(vplScene_ReportFault(scene, "vplScene_SetTransform: ", vplCheckTransform(transform)));
     scene->objects[object].transform = *transform;
@@ -374,6 +389,7 @@ vplResult vplScene_SetTransform(vplScene* scene, int object, const vplMat4* tran
 
 vplResult vplScene_SetObjectMaterial(vplScene* scene, int object, int material)
 {
+    REQUIRE(CONTEXT_OF(scene), scene);
     TRY(checkIndex(scene, "object", object, scene->objectCount));
     TRY(vplScene_CheckObjectMaterial(scene, scene->objects[object].type, scene->objects[object].mesh,
                                      material));
@@ -386,11 +402,11 @@ vplResult vplScene_SetObjectMaterial(vplScene* scene, int object, int material)
 #define GETTERS(Thing, thingCount, element)                                                                  \
     int vplScene_Get##Thing##Count(const vplScene* scene)                                                    \
     {                                                                                                        \
-        return scene->thingCount;                                                                            \
+        return scene != NULL ? scene->thingCount : 0;                                                        \
     }                                                                                                        \
     const vpl##Thing##Def* vplScene_Get##Thing(const vplScene* scene, int index)                             \
     {                                                                                                        \
-        return &scene->element;                                                                              \
+        return index >= 0 && index < vplScene_Get##Thing##Count(scene) ? &scene->element : NULL;             \
     }
 
 GETTERS(Camera, cameraCount, cameras[index].def)
@@ -402,5 +418,5 @@ GETTERS(Emitter, emitterCount, emitters[index].def)
 
 vplContext* vplScene_GetContext(const vplScene* scene)
 {
-    return scene->context;
+    return CONTEXT_OF(scene);
 }

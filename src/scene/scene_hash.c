@@ -147,6 +147,9 @@ static uint64_t addEnvironment(uint64_t state, const vplEnvironmentDef* d)
 
 uint64_t vplScene_GetHash(const vplScene* s)
 {
+    if (s == NULL) {
+        return 0;
+    }
     const int counts[5] = {s->cameraCount, s->materialCount, s->meshCount, s->objectCount, s->emitterCount};
     uint64_t state = addInts(0, counts, 5);
     for (int i = 0; i < s->cameraCount; i++) {

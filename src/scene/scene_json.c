@@ -219,6 +219,7 @@ static vplResult loadJson(vplContext* context, const char* path, vplScene** scen
 vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplModelSceneDef* def,
                            vplScene** sceneOut)
 {
+    REQUIRE(context, context, path, def, sceneOut);
     if (vplIsModelPath(path)) {
         return vplScene_LoadModelAlone(context, path, def, sceneOut);
     }
@@ -232,6 +233,7 @@ vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplModel
 
 vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut)
 {
+    REQUIRE(context, context, path, sceneOut);
     const vplModelSceneDef def = vplDefaultModelSceneDef();
     return vplScene_LoadFor(context, path, &def, sceneOut);
 }
@@ -239,6 +241,8 @@ vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneO
 vplResult vplScene_LoadMemory(vplContext* context, const vplMemoryFile* files, int count,
                               const vplModelSceneDef* def, vplScene** sceneOut)
 {
+    REQUIRE(context, context, def, sceneOut);
+    REQUIRE_ARRAY(context, files, count);
     if (files == NULL || count < 1) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "the number of files is %d, must be at least 1",
                        files == NULL ? 0 : count);

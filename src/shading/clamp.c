@@ -41,6 +41,7 @@ static double shareTaken(const double squares[POINTS], int count, double distanc
 vplResult vplFindNearDistance(const vplGeometry* geometry, const vplView* view, double share,
                               float* distanceOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, view, distanceOut);
     double squares[POINTS];
     int count = 0;
     for (uint32_t i = 1; i <= POINTS; i++) {
@@ -115,6 +116,7 @@ static void addBlock(const vplShading* s, int first, int count, vplClampLoss* su
 vplResult vplEstimateClampLoss(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                                int pointCount, vplClampLoss* lossOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, view, def, lossOut);
     vplShading shading = vplShading_Make(geometry, view, def);
     vplClampLoss sum = {0, 0};
     shading.arena = vplArena_Create(geometry->context);

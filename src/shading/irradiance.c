@@ -22,6 +22,9 @@ void vplAccumulateLights(const vplContext* context, vplLightFormula formula, con
 
 int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out)
 {
+    if (set == NULL || out == NULL) {
+        return 0;
+    }
     int count = 0;
     for (int i = 0; i < set->lightCount; i++) {
         if (set->lights[i].object >= 0) {

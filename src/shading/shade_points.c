@@ -51,6 +51,9 @@ static void lightPoints(void* data, int task, int worker)
 vplResult vplShadePoints(const vplGeometry* geometry, const vplShadeDef* def, const vplSurfacePoint* points,
                          int count, vplRgb* irradianceOut, int64_t* raysOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, def);
+    REQUIRE_ARRAY(CONTEXT_OF(geometry), points, count);
+    REQUIRE_ARRAY(CONTEXT_OF(geometry), irradianceOut, count);
     PointsTask task = {.shading = vplShading_Make(geometry, NULL, def),
                        .points = points,
                        .count = count,

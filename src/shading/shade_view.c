@@ -157,6 +157,7 @@ static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplImage* image, vplShadeStats* statsOut)
 {
+    REQUIRE(CONTEXT_OF(geometry) ?: CONTEXT_OF(image), geometry, view, def, image);
     TRY(vplShadeDef_Check(geometry, view, def, image));
     vplShadeStats stats = {0};
     vplShading shading = vplShading_Make(geometry, view, def);

@@ -9,6 +9,9 @@
 
 vplView vplView_Create(const vplCameraDef* camera, int width, int height)
 {
+    if (camera == NULL) {
+        return (vplView){0};
+    }
     vplView view;
     view.eye = camera->eye;
     view.forward = vplNormalize(vplSub(camera->target, camera->eye));

@@ -58,6 +58,7 @@ static void mergeRegions(void* data, int task, int worker)
 
 vplResult vplCubeMap_FindBounds(vplCubeMap* map)
 {
+    REQUIRE(CONTEXT_OF(map), map);
     vplCubeBounds* bounds = allocateBounds(map->arena, map->size);
     if (bounds == NULL) {
         return VPL_OUT_OF_MEMORY;

@@ -25,12 +25,13 @@ vplCubeFrame vplCube_GetFrame(int face)
         {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
         {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}},
     };
-    return frames[face];
+    return frames[face >= 0 && face < 6 ? face : 0];
 }
 
 bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut)
 {
-    if (direction.x == 0 && direction.y == 0 && direction.z == 0) {
+    const float sum = fabsf(direction.x) + fabsf(direction.y) + fabsf(direction.z);
+    if (!(sum > 0)) { // also NaN
         return false;
     }
     const vplCubeTexel texel = vplCubeTexelOf(direction.x, direction.y, direction.z);
@@ -150,6 +151,7 @@ static void place(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMap
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
                             void* user, vplCubeMap** mapOut)
 {
+    REQUIRE(CONTEXT_OF(geometry), geometry, def, mapOut);
     vplContext* context = geometry->context;
     TRY(checkDef(context, def));
     vplArena* arena = vplArena_Create(context);
@@ -167,6 +169,7 @@ vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* de
 vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def,
                             vplProgressFcn* progress, void* user)
 {
+    REQUIRE(CONTEXT_OF(map) ?: CONTEXT_OF(geometry), map, geometry, def);
     TRY(checkDef(map->context, def));
     if (def->size != map->size) {
         return vplFail(map->context, VPL_INVALID_ARGUMENT, "vplCubeMapDef.size is %d, must be the map's %d",

@@ -14,6 +14,7 @@ size_t vplHemiMaps_BytesPerMap(int size)
 
 vplResult vplHemiMaps_Create(vplContext* context, int size, int capacity, vplHemiMaps** mapsOut)
 {
+    REQUIRE(context, context, mapsOut);
     if (size < 1 || size > VPL_MAX_SHADOW_MAP || capacity < 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "%d hemi-octahedral maps of %d texels a side: must be 0 or more of [1, %d]", capacity,
@@ -55,6 +56,8 @@ static void drawMap(void* data, int index, int worker)
 vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const vplHemiMapPlace* places,
                            int count, vplProgressFcn* progress, void* user)
 {
+    REQUIRE(CONTEXT_OF(maps) ?: CONTEXT_OF(geometry), maps, geometry);
+    REQUIRE_ARRAY(CONTEXT_OF(maps) ?: CONTEXT_OF(geometry), places, count);
     if (count < 0 || count > maps->capacity) {
         return vplFail(maps->context, VPL_INVALID_ARGUMENT,
                        "%d hemi-octahedral maps are asked for, there is room for %d", count, maps->capacity);

@@ -44,6 +44,7 @@ double vplParaboloid_Weight(double x, double y)
 vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, bool triangles,
                                    vplParaboloidMaps** mapsOut)
 {
+    REQUIRE(context, context, mapsOut);
     if (size < 1 || size > VPL_MAX_SHADOW_MAP || capacity < 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "%d paraboloid maps of %d texels a side: must be 0 or more of [1, %d]", capacity, size,
@@ -116,6 +117,8 @@ vplResult vplParaboloidMaps_Draw(vplParaboloidMaps* maps, const vplGeometry* geo
                                  const vplParaboloidPlace* places, int count, vplProgressFcn* progress,
                                  void* user)
 {
+    REQUIRE(CONTEXT_OF(maps) ?: CONTEXT_OF(geometry), maps, geometry);
+    REQUIRE_ARRAY(CONTEXT_OF(maps) ?: CONTEXT_OF(geometry), places, count);
     if (count < 0 || count > maps->capacity) {
         return vplFail(maps->context, VPL_INVALID_ARGUMENT,
                        "%d paraboloid maps are asked for, there is room for %d", count, maps->capacity);

@@ -34,6 +34,7 @@ static void makeOffsets(vplShadow* shadow)
 
 vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplShadow* shadowOut)
 {
+    REQUIRE(CONTEXT_OF(map), map, def, shadowOut);
     vplContext* context = map->context;
     if (def->cookie != SHADOW_COOKIE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadowDef was not made by vplDefaultShadowDef");
@@ -92,6 +93,9 @@ void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, f
 
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal)
 {
+    if (isnan(position.x) || isnan(position.y) || isnan(position.z)) {
+        return 0;
+    }
     const vplSurface surface = vplSurface_OfPoint(position, normal);
     float factor[VPL_LANES];
     vplShadow_FactorBlock(shadow, &surface, factor);

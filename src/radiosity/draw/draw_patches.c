@@ -67,6 +67,7 @@ static vplResult recordAll(vplRaster* raster, const vplPatchFace faces[2], vplIm
 vplResult vplDrawPatches(const vplPatchDraw* draw, const float (*clip)[4], vplProgressFcn* progress,
                          void* user, vplImage* image, vplRasterStats* statsOut)
 {
+    REQUIRE(CONTEXT_OF(image), draw, clip, image);
     TRY(checkDraw(draw));
     vplPatchFace faces[2];
     for (int face = 0; face < 2; face++) {

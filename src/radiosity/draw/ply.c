@@ -179,6 +179,7 @@ static vplResult writeFile(const Baker* b, const char* path)
 vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIrradiance, float scale,
                                 const char* path)
 {
+    REQUIRE(CONTEXT_OF(mesh), mesh, vertexIrradiance, path);
     Baker baker = {.context = mesh->context, .mesh = mesh, .irradiance = vertexIrradiance, .scale = scale};
     if (!(scale >= 0 && isfinite(scale))) {
         return vplFail(mesh->context, VPL_INVALID_ARGUMENT,

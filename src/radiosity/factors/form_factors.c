@@ -62,6 +62,7 @@ static vplResult compute(vplFactorWork* work)
 vplResult vplFormFactors_Create(const vplPatchSides* sides, const vplFormFactorDef* def,
                                 vplFormFactors** factorsOut)
 {
+    REQUIRE(CONTEXT_OF(sides), sides, def, factorsOut);
     TRY(checkDef(sides, def));
     vplContext* context = sides->context;
     vplArena* arena = vplArena_Create(context);

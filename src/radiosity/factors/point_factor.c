@@ -94,6 +94,9 @@ static double overArea(const vplPolygon* polygon, const double point[3], const d
 
 double vplPointFormFactor(vplVec3 point, vplVec3 normal, const vplVec3 triangle[3])
 {
+    if (triangle == NULL) {
+        return 0;
+    }
     // The origin is a corner of a far triangle, whose shape would be lost to rounding otherwise, and the
     // point for a near one.
     vplPolygon polygon;

@@ -157,6 +157,9 @@ double vplTriangleExchange(const vplVec3 a[3], const vplVec3 b[3], const vplEdge
 
 double vplTriangleFormFactor(const vplVec3 a[3], const vplVec3 b[3])
 {
+    if (a == NULL || b == NULL) {
+        return 0;
+    }
     Pair pair;
     loadPair((const vplVec3* const[2]){a, a}, &pair);
     const double(*p)[3] = pair.polygon[0].p;

@@ -93,6 +93,7 @@ static vplResult build(const vplPatchSides* sides, const vplLinkDef* def, vplLin
 
 vplResult vplLinks_Create(const vplPatchSides* sides, const vplLinkDef* def, vplLinks** linksOut)
 {
+    REQUIRE(CONTEXT_OF(sides), sides, def, linksOut);
     TRY(checkDef(sides, def));
     vplArena* arena = vplArena_Create(sides->context);
     vplLinks* links = vplArena_AllocZero(arena, 1, sizeof *links);

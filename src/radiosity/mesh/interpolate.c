@@ -66,6 +66,7 @@ static void interpolateChunk(void* data, int chunk, int worker)
 vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
                                    vplRgb* vertexValuesOut)
 {
+    REQUIRE(CONTEXT_OF(mesh), mesh, values, vertexValuesOut);
     vplContext* context = mesh->context;
     if ((int)weight < 0 || weight > VPL_VERTEX_WEIGHT_EQUAL) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
@@ -145,6 +146,7 @@ static vplResult sharpen(vplArena* scratch, Sharpening* s, vplVertexWeight weigh
 vplResult vplPatchMesh_Sharpen(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
                                int rounds, vplRgb* vertexValues)
 {
+    REQUIRE(CONTEXT_OF(mesh), mesh, values, vertexValues);
     Sharpening s = {.mesh = mesh, .values = values};
     vplArena* scratch = vplArena_Create(mesh->context);
     const vplResult result = sharpen(scratch, &s, weight, rounds, vertexValues);

@@ -174,6 +174,7 @@ static vplResult build(vplArena* scratch, vplPatchMesh* mesh)
 
 vplResult vplPatchMesh_Create(const vplPatchSides* sides, vplPatchMesh** meshOut)
 {
+    REQUIRE(CONTEXT_OF(sides), sides, meshOut);
     vplContext* context = sides->context;
     vplArena *arena = vplArena_Create(context), *scratch = vplArena_Create(context);
     vplPatchMesh* mesh = vplArena_AllocZero(arena, 1, sizeof *mesh);

@@ -108,6 +108,7 @@ static vplResult checkDef(const vplPatchMesh* mesh, const vplPatchPriorityDef* d
 
 vplResult vplFindPatchPriority(const vplPatchMesh* mesh, const vplPatchPriorityDef* def, float* priorityOut)
 {
+    REQUIRE(CONTEXT_OF(mesh), mesh, def, priorityOut);
     const vplPatchSides* sides = mesh->sides;
     const vplPatches* patches = sides->patches;
     TRY(checkDef(mesh, def));

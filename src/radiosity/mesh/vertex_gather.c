@@ -128,6 +128,7 @@ static void gatherChunk(void* data, int chunk, int worker)
 vplResult vplPatchMesh_Gather(const vplPatchMesh* mesh, const vplVertexGather* gather,
                               vplRgb* vertexIrradianceOut, int64_t* raysOut)
 {
+    REQUIRE(CONTEXT_OF(mesh), mesh, gather, vertexIrradianceOut);
     vplContext* context = mesh->context;
     const int chunks = (mesh->vertexCount + CHUNK - 1) / CHUNK;
     if (gather->rays < 1 || gather->rays > MOST_RAYS) {

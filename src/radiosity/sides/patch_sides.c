@@ -232,6 +232,7 @@ static vplResult findSides(const vplPatchSidesDef* def, vplArena* scratch, vplPa
 vplResult vplPatchSides_Create(const vplPatches* patches, const vplPatchSidesDef* def,
                                vplPatchSides** sidesOut)
 {
+    REQUIRE(CONTEXT_OF(patches), patches, def, sidesOut);
     vplContext* context = patches->context;
     TRY(checkDef(context, def));
     vplArena *arena = vplArena_Create(context), *scratch = vplArena_Create(context);

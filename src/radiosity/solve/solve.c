@@ -152,6 +152,7 @@ static vplResult solveWith(vplArena* arena, const vplTransport* transport, vplSo
 vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* def, const vplRgb* source,
                             vplRgb* radiosity, vplSolveStats* statsOut)
 {
+    REQUIRE((transport != NULL ? CONTEXT_OF(transport->sides) : NULL), transport, def, source, radiosity);
     TRY(checkDef(transport, def));
     TRY(checkValues(transport, source, "source"));
     TRY(checkValues(transport, radiosity, "radiosity"));
@@ -207,11 +208,14 @@ static vplResult checkAndGather(const vplTransport* transport, const vplRgb* sou
 
 vplResult vplGatherRadiosity(const vplTransport* transport, const vplRgb* radiosity, vplRgb* irradianceOut)
 {
+    REQUIRE((transport != NULL ? CONTEXT_OF(transport->sides) : NULL), transport, radiosity, irradianceOut);
     return checkAndGather(transport, NULL, radiosity, irradianceOut);
 }
 
 vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
                                vplRgb* residualOut)
 {
+    REQUIRE((transport != NULL ? CONTEXT_OF(transport->sides) : NULL), transport, source, radiosity,
+            residualOut);
     return checkAndGather(transport, source, radiosity, residualOut);
 }

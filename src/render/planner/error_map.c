@@ -90,6 +90,7 @@ static void fill(const Map* m)
 
 vplResult vplRenderer_GetErrorMap(vplRenderer* r, vplImage** mapOut)
 {
+    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, mapOut);
     vplContext* context = r->runner.run.context;
     Map m = {.renderer = r};
     vplImage* picture = NULL;

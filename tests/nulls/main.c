@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Calls every public function with every wrong argument, each in a process of its own: a crash, a hang of 20 s, a failure
+// without a sentence, an output that a failure changed, and NULL that is accepted though the header does not say so count
+// as failures. The calls are written by generate.py from the headers. Ends with "N passed, N failed".
+#include "fixture.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PASSED = 0, SILENT = 90, ACCEPTED, CHANGED, UNNAMED };
+
+static const void* const untouched = &f;
+
+static const char* const reasons[] = {
+    "fails without a sentence", "accepts NULL, which its header does not allow",
+    "fails and changes an output", "its sentence does not name the argument"};
+
+// The sentence about the call: options keep one of their own.
+static const char* sentence(void)
+{
+    const char* message = vplContext_GetLastMessage(f.context);
+    return message[0] == 0 ? vplRenderOptions_GetProblem(f.options) : message;
+}
+
+static int judge(const Call* call)
+{
+    vplContext_SetProgress(f.context, NULL, NULL);
+    for (int i = 0; i < SPACES; i++) {
+        memcpy(spaces[i], &untouched, call->outputs >> i & 1 ? sizeof untouched : 0);
+    }
+    const vplResult result = call->run();
+    if (!call->result) {
+        return PASSED;
+    }
+    if (result == VPL_SUCCESS) {
+        return call->null && !call->optional ? ACCEPTED : PASSED;
+    }
+    for (int i = 0; i < SPACES; i++) {
+        if ((call->outputs >> i & 1) && memcmp(spaces[i], &untouched, sizeof untouched) != 0) {
+            return CHANGED;
+        }
+    }
+    if (call->known && sentence()[0] == 0) {
+        return SILENT;
+    }
+    return call->known && call->null && !call->optional && strstr(sentence(), call->argument) == NULL
+               ? UNNAMED
+               : PASSED;
+}
+
+// Returns whether the call passed; else prints what it did.
+static bool passes(const Call* call)
+{
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(20);
+        _exit(judge(call));
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == PASSED) {
+        return true;
+    }
+    printf("not ok %s, %s = %s: ", call->function, call->argument, call->value);
+    if (WIFSIGNALED(status)) {
+        printf("signal %d, %s\n", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    } else if (WEXITSTATUS(status) < SILENT || WEXITSTATUS(status) > UNNAMED) {
+        printf("ended the process with %d\n", WEXITSTATUS(status));
+    } else {
+        printf("%s\n", reasons[WEXITSTATUS(status) - SILENT]);
+    }
+    return false;
+}
+
+// nulls [FUNCTION]: all calls, or those of one function.
+int main(int count, char** words)
+{
+    makeFixture();
+    int passed = 0, failed = 0;
+    for (int i = 0; i < callCount; i++) {
+        if (count < 2 || strcmp(words[1], calls[i].function) == 0) {
+            *(passes(&calls[i]) ? &passed : &failed) += 1;
+        }
+    }
+    printf("%d functions; %d arguments that must not be NULL, as their headers say, got no NULL\n",
+           functionCount, skippedCount);
+    printf("%d passed, %d failed\n", passed, failed);
+    return failed != 0;
+}
