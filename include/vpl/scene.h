@@ -161,6 +161,12 @@ typedef struct vplEmitterKey {
     vplRgb intensity;
 } vplEmitterKey;
 
+// A keyframe of an object.
+typedef struct vplTransformKey {
+    double frame;      // [-VPL_MAX_FRAME, VPL_MAX_FRAME]
+    vplMat4 transform; // as vplObjectDef.transform
+} vplTransformKey;
+
 // Most keys of a path, and the largest magnitude of a frame.
 enum { VPL_MAX_KEYS = 1 << 20, VPL_MAX_FRAME = 1000000000 };
 
@@ -245,7 +251,7 @@ vplResult vplScene_LoadEnvironment(vplScene* scene, const char* path, const vplE
 
 // Changes what was added, for programs that edit a scene and render it again with the same vplHistory: of its geometry
 // only what changed is made anew, and nothing where only cameras and emitters changed. Pictures have the bits of a scene
-// that was declared so. A camera or emitter that had a path stands still afterwards. A renderer ends with the scene that
+// that was declared so. What had a path stands still afterwards. A renderer ends with the scene that
 // it was created for: after a change its steps are VPL_INVALID_ARGUMENT. The index must be in range, and defs are checked
 // as by the functions above; a failure changes nothing.
 vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def);
@@ -260,6 +266,17 @@ vplResult vplScene_SetObjectMaterial(vplScene* scene, int object, int material);
 // VPL_OUT_OF_MEMORY.
 vplResult vplScene_SetCameraPath(vplScene* scene, int index, const vplCameraKey* keys, int count);
 vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKey* keys, int count);
+
+// Makes an object move along keyframes, as above; between two keys the numbers of the matrices are interpolated. Rendering
+// changes no scene, so an object stands where its path is at frame 0 until vplScene_SetFrame moves it. The index must be in
+// range. VPL_INVALID_ARGUMENT, VPL_OUT_OF_MEMORY.
+vplResult vplScene_SetObjectPath(vplScene* scene, int object, const vplTransformKey* keys, int count);
+
+// Moves all objects that have a path to where it is at a frame, a finite number: as vplScene_SetTransform does, but they keep
+// their paths, and nothing changes where no object moves. Call it before frames are rendered with
+// vplRenderOptions.sequence.frame, which moves cameras and emitters. VPL_INVALID_ARGUMENT if a matrix between two keys cannot
+// be inverted; a failure changes nothing.
+vplResult vplScene_SetFrame(vplScene* scene, double frame);
 
 // Reads an OBJ file, with the MTL files that it names, as one mesh (see examples/scenes/README.md). Adds the
 // materials that its faces use (Kd reflectance, Ke emission) under the names "file.obj:name", and a grey one
@@ -303,6 +320,7 @@ int vplScene_GetSun(const vplScene* scene);
 // The keys of a path, which the scene owns; NULL and 0 if there is none. The index must be in range.
 const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut);
 const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut);
+const vplTransformKey* vplScene_GetObjectPath(const vplScene* scene, int object, int* countOut);
 
 // The camera or emitter at a frame, a finite number. VPL_INVALID_ARGUMENT if the interpolated values are
 // invalid: the eye meets the target, the view meets the up vector, or opposite directions cancel.
