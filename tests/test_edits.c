@@ -250,3 +250,85 @@ TEST_ALONE(EditsSurviveFailedAllocations)
 {
     failSomeAllocations("edits", renderEdited, 1);
 }
+
+// ---- objects that move
+
+static vplMat4 movedBy(const vplScene* scene, int object, float x, float y)
+{
+    vplMat4 m = vplScene_GetObject(scene, object)->transform;
+    m.m[12] += x;
+    m.m[13] += y;
+    return m;
+}
+
+// Frames of a sequence are the pictures of scenes that were declared at these poses; nothing is made anew in a frame in
+// which nothing moves.
+static void assertFramesAreDeclaredPoses(vplContext* context, vplMethod method)
+{
+    vplScene* scene = openScene(context, "tests/data/room-closed.json");
+    const int object = vplScene_GetObjectCount(scene) - 1;
+    const vplTransformKey keys[3] = {{1, movedBy(scene, object, 0, 0)},
+                                     {3, movedBy(scene, object, 0.25f, 0)},
+                                     {4, movedBy(scene, object, 0.25f, 0.5f)}};
+    vplHistory* history;
+    assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
+    assert_int_equal(vplScene_SetObjectPath(scene, object, keys, 3), VPL_SUCCESS);
+    static const float across[7] = {0, 0, 0.125f, 0.25f, 0.25f, 0.25f, 0.25f},
+                       up[7] = {0, 0, 0, 0, 0.5f, 0.5f, 0.5f};
+    uint64_t hashes[7];
+    for (int frame = 0; frame < 7; frame++) {
+        vplScene* declared = openScene(context, "tests/data/room-closed.json");
+        const vplMat4 pose = movedBy(declared, object, across[frame], up[frame]);
+        assert_int_equal(vplScene_SetTransform(declared, object, &pose), VPL_SUCCESS);
+        assert_int_equal(vplScene_SetFrame(scene, frame), VPL_SUCCESS);
+        hashes[frame] = hashOf(scene, method, history, NULL);
+        assert_true(hashes[frame] == hashOf(declared, method, NULL, NULL));
+        assert_true(vplScene_GetHash(scene) == vplScene_GetHash(declared));
+        vplScene_Destroy(declared);
+    }
+    assert_true(hashes[0] == hashes[1] && hashes[1] != hashes[2] && hashes[2] != hashes[3]);
+    assert_true(hashes[3] != hashes[4] && hashes[4] == hashes[6]);
+    vplHistory_Destroy(history);
+    vplScene_Destroy(scene);
+}
+
+TEST(FramesOfMovingObjectsAreDeclaredPoses_Keller, 2)
+{
+    assertFramesAreDeclaredPoses(context, VPL_METHOD_KELLER);
+}
+
+TEST(FramesOfMovingObjectsAreDeclaredPoses_Path, 2)
+{
+    assertFramesAreDeclaredPoses(context, VPL_METHOD_PATH);
+}
+
+TEST(FramesOfMovingObjectsAreDeclaredPoses_Direct, 2)
+{
+    assertFramesAreDeclaredPoses(context, VPL_METHOD_DIRECT);
+}
+
+TEST(PathsOfObjectsAreChecked, 1)
+{
+    vplScene* scene = openScene(context, "tests/data/room-closed.json");
+    vplTransformKey keys[2] = {{0, movedBy(scene, 0, 0, 0)}, {2, movedBy(scene, 0, 1, 0)}};
+    int count;
+    assert_int_equal(vplScene_SetObjectPath(scene, 10000, keys, 2), VPL_INVALID_ARGUMENT);
+    keys[1].frame = 0;
+    assert_int_equal(vplScene_SetObjectPath(scene, 0, keys, 2), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "vplTransformKey 1: "));
+    keys[1].frame = 2;
+    for (int i = 0; i < 12; i++) { // turned inside out: flat in the middle
+        keys[1].transform.m[i] = -keys[0].transform.m[i];
+    }
+    assert_int_equal(vplScene_SetObjectPath(scene, 0, keys, 2), VPL_SUCCESS);
+    assert_int_equal(vplScene_SetFrame(scene, 1), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "object 0 at frame 1: "));
+    assert_int_equal(vplScene_SetFrame(scene, 2), VPL_SUCCESS);
+    assert_non_null(vplScene_GetObjectPath(scene, 0, &count));
+    assert_int_equal(vplScene_SetTransform(scene, 0, &keys[0].transform), VPL_SUCCESS); // stands still now
+    assert_null(vplScene_GetObjectPath(scene, 0, &count));
+    assert_int_equal(vplScene_SetObjectPath(scene, 0, keys, 2), VPL_SUCCESS);
+    assert_int_equal(vplScene_SetObjectPath(scene, 0, NULL, 0), VPL_SUCCESS);
+    assert_int_equal(vplScene_SetFrame(scene, 1), VPL_SUCCESS);
+    vplScene_Destroy(scene);
+}

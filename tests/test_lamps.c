@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Tests of many lamps: the tree from which paths choose emitters, and refusals of pictures that need too much memory.
+// Tests of many lamps: the tree from which paths and pixels choose emitters, and refusals of pictures that need too much memory.
 #include "failing.h"
 #include "geometry/emitter_tree.h"
+#include "geometry/triangle.h"
 #include "path_scenes.h"
 
 enum { LAMPS = 100, QUADS = 40, POINTS = 60 };
@@ -88,12 +89,13 @@ TEST(ProbabilitiesOfATreeOfEmittersAreThoseOfItsChoices, 1)
     assert_int_equal(ends[2] - ends[1], 2 * QUADS);
     for (int k = 0; k < 2; k++) {
         vplEmitterTree* tree;
-        assert_int_equal(vplEmitterTree_Create(e, ends[k], ends[k + 1], &tree), VPL_SUCCESS);
+        vplArena* arena = vplArena_Create(context);
+        assert_int_equal(vplEmitterTree_Create(arena, e, ends[k], ends[k + 1], &tree), VPL_SUCCESS);
         for (uint64_t i = 0; i < POINTS; i++) {
             checkPoint(tree, e, ends[k], ends[k + 1], pointAt(3000 + i, 1),
                        vplNormalize(pointAt(4000 + i, 1)));
         }
-        vplEmitterTree_Destroy(tree);
+        vplArena_Destroy(arena);
     }
     vplEmission_Destroy(e);
     vplGeometry_Destroy(g);
@@ -110,7 +112,8 @@ TEST(NoEmitterThatLightsAPointIsLeftOut, 1)
     int lit = 0;
     assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
     vplEmission* e = emissionOf(scene, g, emitters);
-    assert_int_equal(vplEmitterTree_Create(e, 0, e->firstTriangle, &tree), VPL_SUCCESS);
+    vplArena* arena = vplArena_Create(context);
+    assert_int_equal(vplEmitterTree_Create(arena, e, 0, e->firstTriangle, &tree), VPL_SUCCESS);
     for (uint64_t i = 0; i < 1000; i++) {
         const vplVec3 p = pointAt(5000 + i, 1), n = vplNormalize(pointAt(7000 + i, 1));
         for (int k = 0; k < e->firstTriangle; k++) {
@@ -125,7 +128,7 @@ TEST(NoEmitterThatLightsAPointIsLeftOut, 1)
     }
     printf("# %d pairs of a point and an emitter that lights it\n", lit);
     assert_true(lit > 20000);
-    vplEmitterTree_Destroy(tree);
+    vplArena_Destroy(arena);
     vplEmission_Destroy(e);
     vplGeometry_Destroy(g);
     vplScene_Destroy(scene);
@@ -200,11 +203,10 @@ TEST_ALONE(PathsAmongLampsAreTheSameEverywhere)
     assertSameEverywhere(hashOfHall);
 }
 
-static vplResult traceHall(Attempt* a)
+static vplResult renderCrowd(Attempt* a, const vplRenderOptions* o, int lamps)
 {
-    vplRenderOptions o = pathOptions(8, 1);
     TRY(vplScene_Create(a->context, &a->scene));
-    for (int i = 0; i < LAMPS; i++) {
+    for (int i = 0; i < lamps; i++) {
         vplEmitterDef emitter = vplDefaultEmitterDef();
         emitter.position = pointAt((uint64_t)i, 1);
         TRY(vplScene_AddEmitter(a->scene, &emitter, NULL));
@@ -215,12 +217,147 @@ static vplResult traceHall(Attempt* a)
     TRY(vplScene_AddCamera(a->scene, &camera, NULL));
     TRY(vplScene_AddMaterial(a->scene, &material, &object.material));
     TRY(vplScene_AddObject(a->scene, &object, NULL));
-    return vplRender(a->scene, &o, &a->image, NULL);
+    return vplRender(a->scene, o, &a->image, NULL);
+}
+
+static vplResult traceCrowd(Attempt* a)
+{
+    const vplRenderOptions o = pathOptions(8, 1);
+    return renderCrowd(a, &o, LAMPS);
+}
+
+static vplResult lightCrowd(Attempt* a)
+{
+    vplRenderOptions o = pathOptions(8, 1);
+    o.method = VPL_METHOD_DIRECT;
+    return renderCrowd(a, &o, 1025);
 }
 
 TEST_ALONE(TreesOfEmittersSurviveEveryFailedAllocation)
 {
-    failSomeAllocations("paths among lamps", traceHall, 1);
+    failSomeAllocations("paths among lamps", traceCrowd, 1);
+    failSomeAllocations("direct light of many lamps", lightCrowd, 7);
+}
+
+// ---- direct light
+
+enum { CLOSE = 1024, MANY = 1100 };
+
+// Points of one side of a wall, so close to each other that they receive the same light; each chooses for itself.
+static void lightClosePoints(const vplGeometry* g, const vplShadeDef* def, int triangle, vplVec3 centre,
+                             double sumsOut[2])
+{
+    static vplSurfacePoint points[CLOSE];
+    static vplRgb irradiance[CLOSE];
+    int64_t rays = 0;
+    for (int i = 0; i < CLOSE; i++) {
+        vplVec3 offset = pointAt(9000 + (uint64_t)i, 0.002f);
+        offset = vplSub(offset, vplScale(vplDot(offset, g->normals[triangle]), g->normals[triangle]));
+        points[i] = (vplSurfacePoint){
+            .position = vplAdd(centre, offset), .normal = g->normals[triangle], .triangle = triangle};
+    }
+    sumsOut[0] = sumsOut[1] = 0;
+    assert_int_equal(vplShadePoints(g, def, points, CLOSE, irradiance, &rays), VPL_SUCCESS);
+    for (int i = 0; i < CLOSE; i++) {
+        sumsOut[0] += (double)irradiance[i].r / CLOSE;
+        sumsOut[1] += (double)irradiance[i].r * (double)irradiance[i].r / CLOSE;
+    }
+}
+
+// The mean over many choices is the sum of all emitters, directional ones among them, with their shadows.
+TEST(ChosenEmittersHaveTheMeanOfAll, 2)
+{
+    static vplShadow shadows[LAMPS];
+    vplScene* scene = hall(context);
+    vplEmitterDef emitters[LAMPS];
+    vplGeometry* g;
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    for (int i = 0; i < LAMPS; i++) {
+        emitters[i] = *vplScene_GetEmitter(scene, i);
+    }
+    vplShadeDef def = {
+        .lighting = VPL_LIGHTING_PHYSICAL, .emitters = emitters, .shadows = shadows, .emitterCount = LAMPS};
+    double squares = 0;
+    int checked = 0;
+    for (int triangle = 0; triangle < g->triangleCount; triangle += 5) {
+        const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
+        const vplVec3 centre = vplScale(1.0f / 3, vplAdd(t.corner[0], vplAdd(t.corner[1], t.corner[2])));
+        double all[2], chosen[2];
+        def.emittersPerPoint = 0;
+        lightClosePoints(g, &def, triangle, centre, all);
+        def.emittersPerPoint = 4;
+        lightClosePoints(g, &def, triangle, centre, chosen);
+        const double error = sqrt(fmax(chosen[1] - chosen[0] * chosen[0], 0) / CLOSE);
+        assertNear(chosen[0], all[0], 4 * error + 0.003 * all[0], "irradiance", triangle);
+        squares += error > 0 ? (chosen[0] - all[0]) * (chosen[0] - all[0]) / (error * error) : 0;
+        checked += error > 0;
+    }
+    printf("# %d places, mean square of the difference in standard errors %.2f\n", checked,
+           squares / checked);
+    assert_true(checked >= 8 && squares < 2.5 * checked);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+}
+
+// A room with points, whose pictures are small.
+static vplScene* crowded(vplContext* context, int lamps)
+{
+    vplScene* scene = newScene(context);
+    addRoom(scene, addGrey(scene, 0.5f, 0));
+    addCamera(scene, vplVec(0, 0, 0.9f), vplVec(0, 0, -1), 1.4);
+    for (int i = 0; i < lamps; i++) {
+        addEmitter(scene, VPL_EMITTER_POINT, pointAt((uint64_t)i, 0.9f), vplVec(0, -1, 0), 0.01f);
+    }
+    return scene;
+}
+
+TEST(OnlyManyEmittersAreChosenFrom, 1)
+{
+    static const vplMethod methods[] = {VPL_METHOD_DIRECT, VPL_METHOD_KELLER, VPL_METHOD_RADIOSITY,
+                                        VPL_METHOD_SSVP, VPL_METHOD_PATH};
+    for (int many = 0; many < 2; many++) {
+        vplScene* scene = crowded(context, many ? 1025 : 1024);
+        for (int i = 0; i < 5; i++) {
+            vplRenderOptions o = plainOptions();
+            vplPlan* plan;
+            o.method = methods[i];
+            assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+            assert_int_equal(plan->emittersPerPoint, many && i < 4 ? 64 : 0);
+            assert_int_equal(plan->emitterCount, many ? 1025 : 1024);
+            assert_true(plan->mapEmitterCount > 0 && plan->mapEmitterCount <= 256);
+            vplPlan_Destroy(plan);
+            o.lights.emitterSamples = 100; // has its meaning
+            assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+            assert_true(plan->emittersPerPoint == 0 && plan->emitterCount <= 100);
+            vplPlan_Destroy(plan);
+        }
+        vplScene_Destroy(scene);
+    }
+}
+
+static uint64_t hashOfCrowd(vplContext* context)
+{
+    static const vplMethod methods[] = {VPL_METHOD_DIRECT, VPL_METHOD_KELLER, VPL_METHOD_SSVP};
+    vplScene* scene = crowded(context, MANY);
+    uint64_t hash = 0;
+    for (int i = 0; i < 3; i++) {
+        vplRenderOptions o = plainOptions();
+        o.method = methods[i];
+        o.output.width = o.output.height = 8;
+        o.shadow.rsmSize = 16;
+        o.ssvp.firstBounce = 64;
+        vplImage* image = renderScene(scene, &o, NULL);
+        hash = 31 * hash + vplImage_Hash(image);
+        vplImage_Destroy(image);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    return hash;
+}
+
+TEST_ALONE(PixelsAmongManyLampsAreTheSameEverywhere)
+{
+    assertSameEverywhere(hashOfCrowd);
 }
 
 // ---- memory

@@ -67,6 +67,7 @@ struct vplPlan {
     bool progressive;     // the picture is the mean of several passes
     bool castsRays;       // some stage casts rays, so the geometry has a ray tree
     bool emitterRays;     // emitters are shadowed by rays, not by maps
+    int emittersPerPoint; // that a tree chooses for each point, in direct light; 0: all light it
     bool hasAreaLights;   // a material emits light
     bool hasSky;          // the scene has an environment
     bool hasCutOuts;      // materials let light through
@@ -82,6 +83,9 @@ struct vplPlan {
     vplCameraDef camera;
     const vplEmitterDef* emitters; // those of the scene, posed, or the sample of them that stands for all
     int emitterCount;
+    const vplEmitterDef*
+        mapEmitters; // those with reflective maps: all, or a sample of them where there are many
+    int mapEmitterCount;
     const vplEmitterDef* sceneEmitters; // all of them
     int sceneEmitterCount;
 

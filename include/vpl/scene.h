@@ -208,7 +208,7 @@ vplResult vplScene_LoadEnvironment(vplScene* scene, const char* path, const vplE
 
 // Changes what was added, for programs that edit a scene and render it again with the same vplHistory: of its geometry
 // only what changed is made anew, and nothing where only cameras and emitters changed. Pictures have the bits of a scene
-// that was declared so. A camera or emitter that had a path stands still afterwards. A renderer ends with the scene that
+// that was declared so. What had a path stands still afterwards. A renderer ends with the scene that
 // it was created for: after a change its steps are VPL_INVALID_ARGUMENT. The index must be in range, and defs are checked
 // as by the functions above; a failure changes nothing.
 vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def);

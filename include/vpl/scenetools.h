@@ -71,6 +71,12 @@ typedef struct vplEmitterKey {
     vplRgb intensity;
 } vplEmitterKey;
 
+// A keyframe of an object.
+typedef struct vplTransformKey {
+    double frame;      // [-VPL_MAX_FRAME, VPL_MAX_FRAME]
+    vplMat4 transform; // as vplObjectDef.transform
+} vplTransformKey;
+
 // Most keys of a path, and the largest magnitude of a frame.
 enum { VPL_MAX_KEYS = 1 << 20, VPL_MAX_FRAME = 1000000000 };
 
@@ -85,9 +91,21 @@ vplEmitterKey vplMakeEmitterKey(const vplEmitterDef* def, double frame);
 vplResult vplScene_SetCameraPath(vplScene* scene, int index, const vplCameraKey* keys, int count);
 vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKey* keys, int count);
 
+// Makes an object move along keyframes, as above; between two keys the numbers of the matrices are interpolated. Rendering
+// changes no scene, so an object stands where its path is at frame 0 until vplScene_SetFrame moves it. The index must be in
+// range. VPL_INVALID_ARGUMENT, VPL_OUT_OF_MEMORY.
+vplResult vplScene_SetObjectPath(vplScene* scene, int object, const vplTransformKey* keys, int count);
+
+// Moves all objects that have a path to where it is at a frame, a finite number: as vplScene_SetTransform does, but they keep
+// their paths, and nothing changes where no object moves. Call it before frames are rendered with
+// vplRenderOptions.sequence.frame, which moves cameras and emitters. VPL_INVALID_ARGUMENT if a matrix between two keys cannot
+// be inverted; a failure changes nothing.
+vplResult vplScene_SetFrame(vplScene* scene, double frame);
+
 // The keys of a path, which the scene owns; NULL and 0 if there is none. The index must be in range.
 const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut);
 const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut);
+const vplTransformKey* vplScene_GetObjectPath(const vplScene* scene, int object, int* countOut);
 
 // The camera or emitter at a frame, a finite number. VPL_INVALID_ARGUMENT if the interpolated values are
 // invalid: the eye meets the target, the view meets the up vector, or opposite directions cancel.

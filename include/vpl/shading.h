@@ -133,7 +133,10 @@ typedef struct vplShadeDef {
     // One per emitter: its shadow is taken from this reflective shadow map. NULL, also of an entry: from
     // `shadows`.
     const vplReflectiveMap* const* emitterMaps;
-    int emitterCount;                // 0: no direct light
+    int emitterCount; // 0: no direct light
+    // Points and spots that light a point, with shadow rays, chosen from a tree by how much light they may send there; 0
+    // (default), or not fewer than there are: all do. Physical only. The noise depends on a point's position alone.
+    int emittersPerPoint;
     const vplShadeLight* areaLights; // samples of area lights, with shadow rays; physical only
     int areaLightCount;
     float areaLightMinDistance; // their clamp distance, as minDistance

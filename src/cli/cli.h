@@ -144,7 +144,7 @@ int printPlan(const vplPlan* plan, FILE* file);
 
 // Loads the scene, prints the plan if --explain or --dry-run asks for it, and calls `work` unless it is a dry
 // run.
-typedef int SceneWork(const Arguments* arguments, const vplScene* scene);
+typedef int SceneWork(const Arguments* arguments, vplScene* scene);
 int runOnScene(const Arguments* arguments, SceneWork* work);
 
 // Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
@@ -197,7 +197,7 @@ int writeWholePicture(const Arguments* arguments, vplImage* image);
 
 // vpl render --tile: returns false after complaining of options that are not for parts; renders a part.
 bool checkTile(const Arguments* arguments);
-int renderTile(const Arguments* arguments, const vplScene* scene);
+int renderTile(const Arguments* arguments, vplScene* scene);
 
 // Writes the file name of frame `number` of frames up to `last`: "-0012" before the extension, at least four
 // digits. last < 0: the name itself. Returns false if it does not fit.

@@ -23,7 +23,7 @@ static void printLights(const vplScene* scene, const vplLightSet* set)
     }
 }
 
-static int listLights(const Arguments* a, const vplScene* scene)
+static int listLights(const Arguments* a, vplScene* scene)
 {
     vplLightSet* set = NULL;
     int code = exitCode(vplMakeLights(scene, &a->render, &set), true);
@@ -45,7 +45,7 @@ int runLights(const Arguments* a)
 
 // ---- patches
 
-static int bake(const Arguments* a, const vplScene* scene)
+static int bake(const Arguments* a, vplScene* scene)
 {
     catchInterrupts();
     Progress progress = beginProgress(a->quiet);

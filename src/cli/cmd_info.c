@@ -13,7 +13,7 @@ typedef struct Info {
     vplPlan* plan;
     int64_t meshVertices, meshTriangles;
     int objectsOfType[OBJECT_TYPES], emittersOfType[EMITTER_TYPES];
-    int paths;                    // of cameras and lights
+    int paths;                    // of cameras, lights and objects
     double firstFrame, lastFrame; // of their keys; 0 where there are none
 } Info;
 
@@ -29,7 +29,11 @@ static void countScene(Info* info)
     const vplScene* scene = info->scene;
     int keys;
     for (int i = 0; i < vplScene_GetObjectCount(scene); i++) {
+        const vplTransformKey* path = vplScene_GetObjectPath(scene, i, &keys);
         info->objectsOfType[vplScene_GetObject(scene, i)->type]++;
+        if (path != NULL) {
+            addPath(info, path[0].frame, path[keys - 1].frame);
+        }
     }
     for (int i = 0; i < vplScene_GetMeshCount(scene); i++) {
         info->meshVertices += vplScene_GetMesh(scene, i)->vertexCount;
@@ -180,7 +184,7 @@ static vplResult examine(const Arguments* a, Info* info)
     return planRender(a, info->scene, &info->plan);
 }
 
-static int showInfo(const Arguments* a, const vplScene* scene)
+static int showInfo(const Arguments* a, vplScene* scene)
 {
     Info info = {.scene = scene};
     int code = exitCode(examine(a, &info), true);

@@ -62,7 +62,7 @@ static vplResult makePieces(const Arguments* a, const vplScene* scene, vplRender
     return VPL_SUCCESS;
 }
 
-int renderTile(const Arguments* a, const vplScene* scene)
+int renderTile(const Arguments* a, vplScene* scene)
 {
     catchInterrupts();
     Progress progress = beginProgress(a->quiet);

@@ -256,7 +256,7 @@ static int renderFrame(const Arguments* a, const vplScene* scene, const vplRende
     return picture.unsaved ? EXIT_COULD_NOT : code;
 }
 
-static int renderScene(const Arguments* a, const vplScene* scene)
+static int renderScene(const Arguments* a, vplScene* scene)
 {
     catchInterrupts();
     Sequence sequence = {beginProgress(a->quiet), 0, 1, chooseDisplay(a)};
@@ -273,7 +273,8 @@ static int renderScene(const Arguments* a, const vplScene* scene)
         if (a->verbose) {
             complain("frame %d", a->frames[0] + sequence.done);
         }
-        code = renderFrame(a, scene, &options);
+        code = exitCode(vplScene_SetFrame(scene, options.sequence.frame), false);
+        code = code == EXIT_DONE ? renderFrame(a, scene, &options) : code;
     }
     vplHistory_Destroy(options.sequence.history);
     return code;

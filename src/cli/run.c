@@ -149,6 +149,9 @@ int runOnScene(const Arguments* a, SceneWork* work)
     }
     vplScene* scene = NULL;
     int code = exitCode(loadScene(a, context, &scene), true);
+    if (code == EXIT_DONE) {
+        code = exitCode(vplScene_SetFrame(scene, a->render.sequence.frame), true);
+    }
     if (code == EXIT_DONE && a->planIn != NULL && !a->quiet && a->planScene != vplScene_GetHash(scene)) {
         complain("warning: %s was made for another scene, or %s was changed since: the picture will differ",
                  a->planIn, a->positionals[0]);

@@ -41,12 +41,10 @@ typedef struct Node {
 } Node;
 
 struct vplEmitterTree {
-    const vplEmission* emission;
     Node* nodes;
     int* sources;   // in the order of leaves
     int* positions; // in that order, of source first + i; without meaning where it is not in the tree
     int first, end, count;
-    vplArena* arena;
 };
 
 // ---- sources
@@ -236,28 +234,29 @@ static double diagonalOf(const Build* b)
     return sqrt(square);
 }
 
-static vplResult fill(vplEmitterTree* t)
+static vplResult fill(vplEmitterTree* t, const vplEmission* emission, vplArena* arena)
 {
     const size_t count = (size_t)t->count, range = (size_t)(t->end - t->first);
-    t->nodes = vplArena_Alloc(t->arena, 2 * count - 1, sizeof *t->nodes);
-    t->sources = vplArena_Alloc(t->arena, count, sizeof *t->sources);
-    t->positions = vplArena_Alloc(t->arena, range, sizeof *t->positions);
-    Bound* bounds = vplArena_Alloc(t->arena, range, sizeof *bounds);
-    TRY(vplArena_Check(t->arena));
+    t->nodes = vplArena_Alloc(arena, 2 * count - 1, sizeof *t->nodes);
+    t->sources = vplArena_Alloc(arena, count, sizeof *t->sources);
+    t->positions = vplArena_Alloc(arena, range, sizeof *t->positions);
+    Bound* bounds = vplArena_Alloc(arena, range, sizeof *bounds);
+    TRY(vplArena_Check(arena));
     for (int i = t->first, at = 0; i < t->end; i++) {
-        if (hasPlace(t->emission, i)) {
-            bounds[i - t->first] = boundSource(t->emission, i);
+        if (hasPlace(emission, i)) {
+            bounds[i - t->first] = boundSource(emission, i);
             t->sources[at++] = i;
         }
     }
     Build b = {t, bounds, 0};
     b.turn = TURN * diagonalOf(&b);
     build(&b, 0, 0, t->count, 0);
-    vplArena_Free(t->arena, bounds);
+    vplArena_Free(arena, bounds);
     return VPL_SUCCESS;
 }
 
-vplResult vplEmitterTree_Create(const vplEmission* emission, int first, int end, vplEmitterTree** treeOut)
+vplResult vplEmitterTree_Create(vplArena* arena, const vplEmission* emission, int first, int end,
+                                vplEmitterTree** treeOut)
 {
     int count = 0;
     for (int i = first; i < end; i++) {
@@ -267,20 +266,14 @@ vplResult vplEmitterTree_Create(const vplEmission* emission, int first, int end,
         *treeOut = NULL;
         return VPL_SUCCESS;
     }
-    vplArena* arena = vplArena_Create(emission->context);
     vplEmitterTree* t = vplArena_AllocZero(arena, 1, sizeof *t);
-    vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS) {
-        *t = (vplEmitterTree){
-            .emission = emission, .first = first, .end = end, .count = count, .arena = arena};
-        result = fill(t);
-    }
-    return vplArena_Deliver(arena, result, t, treeOut);
-}
-
-void vplEmitterTree_Destroy(vplEmitterTree* tree)
-{
-    vplArena_Destroy(tree != NULL ? tree->arena : NULL);
+    TRY(vplArena_Check(arena));
+    t->first = first;
+    t->end = end;
+    t->count = count;
+    TRY(fill(t, emission, arena));
+    *treeOut = t;
+    return VPL_SUCCESS;
 }
 
 // ---- choosing

@@ -5,6 +5,8 @@
 
 #include <vpl/geometry.h>
 
+#include "base/arena.h"
+
 typedef struct vplEmitterTree vplEmitterTree;
 
 // A source that was chosen.
@@ -15,11 +17,9 @@ typedef struct vplChosenSource {
 } vplChosenSource;
 
 // Makes a tree of the sources first .. end - 1 that have a place: points, spots and triangles. Needs O(n log n) time and
-// 70 bytes per source. The emission must outlive the tree. *treeOut is NULL where there are none.
-vplResult vplEmitterTree_Create(const vplEmission* emission, int first, int end, vplEmitterTree** treeOut);
-
-// NULL is allowed.
-void vplEmitterTree_Destroy(vplEmitterTree* tree);
+// 120 bytes per source, twice as much while it is made. The arena owns it. *treeOut is NULL where there are none.
+vplResult vplEmitterTree_Create(vplArena* arena, const vplEmission* emission, int first, int end,
+                                vplEmitterTree** treeOut);
 
 // Chooses a source for a point and the normal of the side that is lit, by a number in [0, 1), in O(log n). A source that
 // may light the point has a probability greater than 0. Together they may stay below 1: bounds are loose, and a choice can

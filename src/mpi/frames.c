@@ -13,7 +13,7 @@
 
 typedef struct Frames {
     Ranks* ranks;
-    const vplScene* scene;
+    vplScene* scene;
     vplContext* context;
     vplRenderOptions options;
     vplWriteOptions display; // its exposure is that of the first frame
@@ -61,6 +61,7 @@ static vplResult makeFrame(void* user, int index, uint8_t** bytesOut, size_t* si
     char path[PATH_MAX];
     nameFrame(f, index, path); // renderFrames has checked the lengths
     f->options.sequence.frame = f->ranks->arguments->frames[0] + index;
+    TRY(vplScene_SetFrame(f->scene, f->options.sequence.frame));
     TRY(vplRender(f->scene, &f->options, &image, NULL));
     const vplResult result = encode(f, image, path, bytesOut, sizeOut);
     vplImage_Destroy(image);
@@ -194,7 +195,7 @@ static int checkNames(const Frames* f)
     return checkOutput(path) ? EXIT_DONE : EXIT_COULD_NOT;
 }
 
-int renderFrames(Ranks* r, const vplScene* scene)
+int renderFrames(Ranks* r, vplScene* scene)
 {
     const double start = wallMs();
     const Arguments* a = r->arguments;

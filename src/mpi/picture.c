@@ -155,7 +155,7 @@ static int finish(Picture* p, double start)
     return code == EXIT_DONE ? reportRanks(p->ranks, wallMs() - start, hash) : code;
 }
 
-int renderPieces(Ranks* r, const vplScene* scene)
+int renderPieces(Ranks* r, vplScene* scene)
 {
     const double start = wallMs();
     Picture p = {.ranks = r, .context = vplScene_GetContext(scene), .journal = {.file = -1}};

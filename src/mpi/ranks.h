@@ -97,9 +97,9 @@ bool closeJournal(Journal* journal);
 
 // ---- commands
 
-int renderPieces(Ranks* ranks, const vplScene* scene); // picture.c
-int renderFrames(Ranks* ranks, const vplScene* scene); // frames.c
-int measureMessages(Ranks* ranks);                     // ping_pong.c
+int renderPieces(Ranks* ranks, vplScene* scene); // picture.c
+int renderFrames(Ranks* ranks, vplScene* scene); // frames.c
+int measureMessages(Ranks* ranks);               // ping_pong.c
 
 // Prints what the ranks did, as -v and --stats ask for it; `hash` is the picture's. An exit code (report.c).
 int reportRanks(const Ranks* ranks, double wallMs, uint64_t hash);

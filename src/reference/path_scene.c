@@ -19,37 +19,37 @@ vplPathDef vplDefaultPathDef(void)
 static vplResult listDirectional(vplPathScene* s)
 {
     const vplEmission* e = s->emission;
-    s->directional = vplAlloc(e->context, (size_t)e->emitterCount, sizeof *s->directional);
-    for (int i = 0; i < e->emitterCount && s->directional != NULL; i++) {
+    s->directional = vplArena_Alloc(s->arena, (size_t)e->emitterCount, sizeof *s->directional);
+    TRY(vplArena_Check(s->arena));
+    for (int i = 0; i < e->emitterCount; i++) {
         if (e->emitters[i].type == VPL_EMITTER_DIRECTIONAL) {
             s->directional[s->directionalCount++] = i;
         }
     }
-    return s->directional != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    return VPL_SUCCESS;
 }
 
 static vplResult makeTrees(vplPathScene* s)
 {
     const vplEmission* e = s->emission;
     const int emitters = e->environment >= 0 ? e->environment : e->firstTriangle;
+    const int triangles = e->sourceCount - e->firstTriangle;
+    s->arena = vplArena_Create(e->context);
     if (emitters >= s->def.emittersOfTree) {
-        TRY(vplEmitterTree_Create(e, 0, emitters, &s->emitterTree));
+        TRY(vplEmitterTree_Create(s->arena, e, 0, emitters, &s->emitterTree));
         TRY(s->emitterTree != NULL ? listDirectional(s) : VPL_SUCCESS);
     }
-    return e->sourceCount - e->firstTriangle >= s->def.trianglesOfTree
-               ? vplEmitterTree_Create(e, e->firstTriangle, e->sourceCount, &s->triangleTree)
-               : VPL_SUCCESS;
+    return triangles >= s->def.trianglesOfTree
+               ? vplEmitterTree_Create(s->arena, e, e->firstTriangle, e->sourceCount, &s->triangleTree)
+               : vplArena_Check(s->arena);
 }
 
 void vplPathScene_Free(vplPathScene* s)
 {
-    vplEmitterTree_Destroy(s->emitterTree);
-    vplEmitterTree_Destroy(s->triangleTree);
+    vplArena_Destroy(s->arena);
     vplEmission_Destroy(s->emission);
     s->emission = NULL;
-    vplFree(s->geometry->context, s->directional);
-    s->emitterTree = s->triangleTree = NULL;
-    s->directional = NULL;
+    s->arena = NULL;
 }
 
 vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const vplPathDef* def)

@@ -50,9 +50,10 @@ vplPathDef vplDefaultPathDef(void);
 typedef struct vplPathScene {
     const vplGeometry* geometry;
     vplEmission* emission;        // owned
+    vplArena* arena;              // of the trees; owned
     vplEmitterTree* emitterTree;  // of points and spots; NULL: a vertex asks each
-    vplEmitterTree* triangleTree; // of triangles that emit; NULL: they are chosen by power. Both are owned
-    int* directional; // indices of directional emitters, where there is a tree of the others; owned
+    vplEmitterTree* triangleTree; // of triangles that emit; NULL: they are chosen by power
+    int* directional;             // indices of directional emitters, where there is a tree of the others
     int directionalCount;
     vplPathDef def;
     vplSobol sobol;

@@ -12,6 +12,9 @@
 
 #include <math.h>
 
+// Choosing one of many emitters from a tree takes as long as some shadow rays.
+enum { CHOICE_WORK = 8 };
+
 enum { BUILD, TRIANGLE, TEXEL, PIXEL, LIGHT, SHADOW_RAY, PATH_RAY, FORM_FACTOR };
 
 // A few rays into the picture, and one from each surface that they hit.
@@ -220,12 +223,11 @@ static void addFurtherBounces(const Scale* s, vplWork* w)
     }
 }
 
-static double facesOf(const vplPlan* p, bool reflective)
+static double facesOfMaps(const vplPlan* p)
 {
     double faces = 0;
     for (int i = 0; i < p->emitterCount; i++) {
-        const vplEmitterType type = p->emitters[i].type;
-        faces += reflective ? (type == VPL_EMITTER_POINT ? 6 : 1) : (type != VPL_EMITTER_DIRECTIONAL ? 6 : 0);
+        faces += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL ? 6 : 0;
     }
     return faces;
 }
@@ -241,10 +243,10 @@ static vplWork workOf(const Scale* s, vplStageId id)
         w.counts[BUILD] = s->triangles * (p->castsRays ? 1 : 0.15);
         break;
     case VPL_STAGE_EMITTER_MAPS:
-        addMaps(facesOf(p, false), o->shadow.mapSize, s, &w);
+        addMaps(facesOfMaps(p), o->shadow.mapSize, s, &w);
         break;
     case VPL_STAGE_REFLECTIVE_MAPS:
-        addMaps(facesOf(p, true), o->shadow.rsmSize, s, &w);
+        addMaps(vplReflectiveMapFaces(p), o->shadow.rsmSize, s, &w);
         break;
     case VPL_STAGE_PARTICLES:
         w.counts[PATH_RAY] = s->lights * s->pathDepth;
@@ -315,7 +317,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
                .lamps = g->emits,
                .area = vplGeometry_Area(g),
                .sides = p->patchSides,
-               .emitters = p->emitterCount,
+               .emitters = p->emittersPerPoint > 0 ? CHOICE_WORK * p->emittersPerPoint : p->emitterCount,
                .reflectance = vplGeometry_MeanReflectance(g)};
     const double doublings = log2(fmax(s.triangles, 2) / 32);
     s.depth = 1 + 0.1 * fmax(doublings, 0);

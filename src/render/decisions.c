@@ -193,6 +193,13 @@ static void chooseShadows(vplPlan* p)
     const double maps = o->method == VPL_METHOD_SSVP ? rsmBytes(p, MOST_RSM) : vplEmitterMapBytes(p);
     p->emitterRays =
         o->lights.shadows == VPL_LIGHT_SHADOWS_RAY || (!documented && maps > VPL_MAX_EMITTER_MAP_BYTES);
+    p->emitterRays = p->emitterRays || p->mapEmitters != p->emitters; // not each has a map
+    if (p->emitterCount > VPL_MOST_EMITTERS && !documented && o->method != VPL_METHOD_PATH) {
+        p->emitterRays = true;
+        p->emittersPerPoint = VPL_EMITTERS_PER_POINT;
+        vplDecide(p, "emitter-samples", "for each point a tree chooses %d of the %d lights",
+                  p->emittersPerPoint, p->emitterCount);
+    }
     p->biasRule = pair || (documented && !exact) ? VPL_BIAS_PAIR : VPL_BIAS_EXACT;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
         o->lights.shadows = o->method == VPL_METHOD_KELLER ? VPL_LIGHT_SHADOWS_AUTO

@@ -24,12 +24,11 @@ typedef struct Scale {
 // Bytes per triangle that the rasterizer holds while it draws a view, and the six faces of a cube map.
 static const double RASTER_VIEW = 34, RASTER_CUBE = 150;
 
-static int countMaps(const vplPlan* p, bool points)
+static int countMapped(const vplPlan* p)
 {
     int count = 0;
     for (int i = 0; i < p->emitterCount; i++) {
-        const vplEmitterType type = p->emitters[i].type;
-        count += points ? type == VPL_EMITTER_POINT : type != VPL_EMITTER_DIRECTIONAL;
+        count += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL;
     }
     return count;
 }
@@ -37,12 +36,16 @@ static int countMaps(const vplPlan* p, bool points)
 double vplEmitterMapBytes(const vplPlan* p)
 {
     const double texels = (double)p->options.shadow.mapSize * p->options.shadow.mapSize;
-    return countMaps(p, false) * 6 * texels * sizeof(float);
+    return countMapped(p) * 6 * texels * sizeof(float);
 }
 
 double vplReflectiveMapFaces(const vplPlan* p)
 {
-    return p->emitterCount + 5.0 * countMaps(p, true);
+    double faces = 0;
+    for (int i = 0; i < p->mapEmitterCount; i++) {
+        faces += p->mapEmitters[i].type == VPL_EMITTER_POINT ? 6 : 1;
+    }
+    return faces;
 }
 
 // ---- stages
@@ -195,6 +198,9 @@ static Bytes picture(const Scale* s)
     // What is behind all surfaces is a picture of its own, when the memory of interleaved shading is free again.
     scratch += s->plan->hasSky && s->plan->showsDirect && !vplPixelsShareLight(s->plan) ? 12 * s->pixels : 0;
     scratch += s->plan->showsVirtual ? lightScratch(s) : 0;
+    // Emitters as kernels read them, and while their tree is made.
+    scratch +=
+        s->plan->emittersPerPoint > 0 ? 500.0 * s->plan->emitterCount * (s->plan->compensates ? 2 : 1) : 0;
     scratch += s->plan->gathers ? 12 * s->sides + 4.0 * s->plan->patches : 0; // what rays meet
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
@@ -315,7 +321,7 @@ static void countDraws(const Scale* s, vplPlan* p)
         o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
     const bool drawn = o->method == VPL_METHOD_RADIOSITY && !p->gathers;
     const int64_t patchDraws = drawn ? 2 : 0; // of fronts and of backs
-    const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
+    const int64_t maps = p->emitterRays ? 0 : countMapped(p);
     p->drawCalls =
         objects * (6 * maps + (1 + passes) * supersample) + patchDraws * supersample * vplCountPoints(p);
 }

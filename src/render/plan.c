@@ -160,7 +160,8 @@ enum { EMITTER_SAMPLE_STREAM = 0x80000011u }; // of random numbers
 
 // Chooses `wanted` of the emitters by systematic sampling. One that is chosen several times is listed once, as bright as
 // its choices together. Scales them to keep the sum of strengths.
-static vplResult sampleEmitters(vplPlan* p, int wanted)
+static vplResult sampleEmitters(const vplPlan* p, int wanted, const vplEmitterDef** emittersOut,
+                                int* countOut)
 {
     vplEmitterDef* chosen = vplArena_Alloc(p->arena, (size_t)wanted, sizeof *chosen);
     TRY(vplArena_Check(p->arena));
@@ -186,8 +187,8 @@ static vplResult sampleEmitters(vplPlan* p, int wanted)
             count++;
         }
     }
-    p->emitters = chosen;
-    p->emitterCount = count;
+    *emittersOut = chosen;
+    *countOut = count;
     return VPL_SUCCESS;
 }
 
@@ -209,7 +210,14 @@ static vplResult pose(const vplScene* scene, vplPlan* p)
     p->emitters = p->sceneEmitters = emitters;
     p->sceneEmitterCount = p->emitterCount;
     const int wanted = o->lighting == VPL_LIGHTING_DOCUMENTED ? 0 : o->lights.emitterSamples;
-    return wanted > 0 && wanted < p->emitterCount ? sampleEmitters(p, wanted) : VPL_SUCCESS;
+    if (wanted > 0 && wanted < p->emitterCount) {
+        TRY(sampleEmitters(p, wanted, &p->emitters, &p->emitterCount));
+    }
+    p->mapEmitters = p->emitters;
+    p->mapEmitterCount = p->emitterCount;
+    return o->lighting == VPL_LIGHTING_PHYSICAL && p->emitterCount > VPL_MAPPED_EMITTERS
+               ? sampleEmitters(p, VPL_MAPPED_EMITTERS, &p->mapEmitters, &p->mapEmitterCount)
+               : VPL_SUCCESS;
 }
 
 static vplResult decideAll(vplRunner* r, vplPlan* p)

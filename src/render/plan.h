@@ -31,6 +31,14 @@ static inline double vplPlan_DrawnPatches(const vplPlan* plan)
 // shadows of more, and reflective maps are smaller. Maps of 44 points of 1024^2 texels, after which rays take about as long.
 #define VPL_MAX_EMITTER_MAP_BYTES 1073741824.0
 
+// More emitters than VPL_MOST_EMITTERS do not each light every point: for each point a tree chooses some. Direct light of
+// 1,000 takes five times as long as that, and the choices have a relmse of 0.011.
+enum { VPL_MOST_EMITTERS = 1024, VPL_EMITTERS_PER_POINT = 64 };
+
+// Where there are more emitters, so many of them, chosen by strength, have reflective maps and stand for all: the texels of
+// more would be too few. SSVP with 1,000 lamps: relmse 0.014 instead of 0.074, energy 0.98 instead of 0.77.
+enum { VPL_MAPPED_EMITTERS = 256 };
+
 // Bytes of the shadow maps of all emitters, and faces of their reflective maps.
 double vplEmitterMapBytes(const vplPlan* plan);
 double vplReflectiveMapFaces(const vplPlan* plan);

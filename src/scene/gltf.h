@@ -38,7 +38,7 @@ typedef enum vplGltfLoss {
     VPL_GLTF_ORTHOGRAPHIC,
     VPL_GLTF_NO_CAMERA,
     VPL_GLTF_UNUSED,
-    VPL_GLTF_STILL,
+    VPL_GLTF_FLAT_FRAMES,
     VPL_GLTF_EMITS_ONE_SIDED,
     VPL_GLTF_EMISSIVE_TEXTURES,
     VPL_GLTF_NO_PICTURE,
@@ -195,9 +195,6 @@ vplResult vplGltf_ReadMotion(vplGltf* g, vplGltfMotion* out);
 // Finds the first and last whole frame of the motion of a node or of those above it. VPL_LIMIT.
 vplResult vplGltfMotion_FindFrames(vplGltf* g, const vplGltfMotion* m, int node, int64_t* firstOut,
                                    int64_t* lastOut, bool* movesOut);
-
-// True if the node, or one above it, moves.
-bool vplGltf_Moves(const vplGltf* g, int node);
 
 // The place of a node in the model at a frame.
 vplAffine vplGltfMotion_Place(const vplGltf* g, const vplGltfMotion* m, int node, double frame);

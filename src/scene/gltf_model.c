@@ -20,7 +20,8 @@ static const char* const SENTENCES[VPL_GLTF_LOSSES] = {
     [VPL_GLTF_ORTHOGRAPHIC] = "%lld cameras are orthographic, which is not supported, and left out",
     [VPL_GLTF_NO_CAMERA] = "%lld cameras and lights of nodes that are scaled to nothing are left out",
     [VPL_GLTF_UNUSED] = "%lld cameras and lights have no effect in a model that is part of a scene file",
-    [VPL_GLTF_STILL] = "%lld nodes with meshes are animated: they stand still, only cameras and lights move",
+    [VPL_GLTF_FLAT_FRAMES] = "%lld nodes with meshes are scaled to nothing at some frames: they stand there "
+                             "as at the frame before",
     [VPL_GLTF_EMITS_ONE_SIDED] = "%lld double-sided materials emit light: from their front sides only",
     [VPL_GLTF_EMISSIVE_TEXTURES] = "%lld materials have emissive textures: they emit the mean of it evenly",
     [VPL_GLTF_NO_PICTURE] = "%lld textures name no PNG or JPEG picture: without them",
@@ -38,8 +39,36 @@ static void warn(const vplGltf* g)
     }
 }
 
+// Lists where a part stands at each whole frame.
+static vplResult movePart(vplGltf* g, const vplGltfMotion* motion, int node, vplModel* model,
+                          vplModelPart* part)
+{
+    int64_t first, last;
+    bool moves, flat = false;
+    TRY(vplGltfMotion_FindFrames(g, motion, node, &first, &last, &moves));
+    if (!moves) {
+        return VPL_SUCCESS;
+    }
+    vplAffine* places = vplArena_Alloc(model->arena, (size_t)(last - first) + 1, sizeof *places);
+    TRY(vplArena_Check(model->arena));
+    for (int i = 0; i <= last - first; i++) {
+        places[i] = vplGltfMotion_Place(g, motion, node, (double)(first + i));
+        const vplMat4 matrix = vplAffine_ToMat4(&places[i]);
+        const vplFault fault = vplCheckTransform(&matrix);
+        if (fault.field != NULL && fault.index < 0) {
+            places[i] = i > 0 ? places[i - 1] : part->toModel;
+            flat = true;
+        }
+    }
+    g->losses[VPL_GLTF_FLAT_FRAMES] += flat;
+    part->places = places;
+    part->placeCount = (int)(last - first) + 1;
+    part->firstFrame = first;
+    return VPL_SUCCESS;
+}
+
 // Adds the part of a node that has a mesh.
-static vplResult addPart(vplGltf* g, int node, vplModel* model)
+static vplResult addPart(vplGltf* g, const vplGltfMotion* motion, int node, vplModel* model)
 {
     const vplGltfNode* n = &g->nodes[node];
     const vplJson item = vplGltf_Item(g, VPL_GLTF_NODES, node),
@@ -57,7 +86,7 @@ static vplResult addPart(vplGltf* g, int node, vplModel* model)
         return VPL_SUCCESS;
     }
     g->losses[VPL_GLTF_SKINS] += json_object_get(item.value, "skin") != NULL;
-    g->losses[VPL_GLTF_STILL] += vplGltf_Moves(g, node);
+    TRY(movePart(g, motion, node, model, &part));
     TRY(vplJson_ReadString(&mesh, "name", &name));
     TRY(vplJson_ReadString(&item, "name", &name));
     part.name = name != NULL ? vplArena_CopyString(model->arena, name) : NULL;
@@ -75,7 +104,7 @@ static vplResult readModel(vplGltf* g, bool whole, vplModel* model)
     TRY(vplGltf_ReadMotion(g, &motion));
     for (int i = 0; i < count; i++) {
         if (g->nodes[i].inScene && g->nodes[i].mesh >= 0) {
-            TRY(addPart(g, i, model));
+            TRY(addPart(g, &motion, i, model));
         }
         const bool other = g->nodes[i].camera >= 0 || g->nodes[i].light >= 0;
         g->losses[VPL_GLTF_UNUSED] += g->nodes[i].inScene && other && !whole;

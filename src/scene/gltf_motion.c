@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Animations of glTF files: curves of translations, rotations and scales of nodes. Cameras and lights get a keyframe at
+// Animations of glTF files: curves of translations, rotations and scales of nodes. Cameras, lights and objects get a keyframe at
 // each whole frame, because a path of libvpl is linear between its keys, and what a node above turns is not.
 #include "scene/gltf.h"
 
@@ -256,14 +256,4 @@ vplAffine vplGltfMotion_Place(const vplGltf* g, const vplGltfMotion* m, int node
         place = vplAffine_Multiply(&local, &place);
     }
     return place;
-}
-
-bool vplGltf_Moves(const vplGltf* g, int node)
-{
-    for (int at = node; at >= 0; at = g->nodes[at].parent) {
-        if (g->nodes[at].moves) {
-            return true;
-        }
-    }
-    return false;
 }

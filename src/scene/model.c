@@ -120,12 +120,8 @@ static vplResult addObjects(vplScene* scene, const char* path, const vplObjectDe
     TRY(vplScene_ReadModel(scene, path, false, model));
     for (size_t i = 0; i < model->count; i++) {
         vplObjectDef object = *def;
-        const vplAffine whole = vplAffine_Multiply(&outer, &model->parts[i].toModel);
-        object.type = VPL_OBJECT_MESH;
-        object.mesh = model->parts[i].mesh;
         object.name = def->name != NULL ? def->name : model->parts[i].name;
-        object.transform = vplAffine_ToMat4(&whole);
-        TRY(vplScene_AddObject(scene, &object, NULL));
+        TRY(vplScene_AddPart(scene, &outer, &model->parts[i], &object));
     }
     return VPL_SUCCESS;
 }
@@ -135,7 +131,8 @@ vplResult vplScene_LoadModel(vplScene* scene, const char* path, const vplObjectD
 {
     REQUIRE(CONTEXT_OF(scene), scene, path, def);
     vplModel model = {.arena = vplArena_Create(scene->context)};
-    const int materials = scene->materialCount, meshes = scene->meshCount, objects = scene->objectCount;
+    const int materials = scene->materialCount, meshes = scene->meshCount, objects = scene->objectCount,
+              movers = scene->moverCount;
     const vplResult result = vplIsModelPath(path) ? addObjects(scene, path, def, &model)
                                                   : vplFail(scene->context, VPL_INVALID_ARGUMENT,
                                                             "%s: must end in %s", path, VPL_MODEL_ENDINGS);
@@ -144,6 +141,7 @@ vplResult vplScene_LoadModel(vplScene* scene, const char* path, const vplObjectD
         scene->materialCount = materials;
         scene->meshCount = meshes;
         scene->objectCount = objects;
+        scene->moverCount = movers;
         return result;
     }
     if (firstOut != NULL) {

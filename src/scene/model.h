@@ -28,6 +28,10 @@ typedef struct vplModelPart {
     int mesh; // of the scene
     vplAffine toModel;
     const char* name; // NULL: none
+    // Where it stands at frames firstFrame, firstFrame + 1 and so on; 0: it does not move.
+    const vplAffine* places;
+    int placeCount;
+    int64_t firstFrame;
 } vplModelPart;
 
 // The meshes that a file places.
@@ -40,6 +44,10 @@ typedef struct vplModel {
 // Adds the meshes and materials of a model file to the scene, and lists their places. On failure the scene is as it
 // was. A glTF file's cameras and lights are added, too, if `whole`.
 vplResult vplScene_ReadModel(vplScene* scene, const char* path, bool whole, vplModel* model);
+
+// Adds an object of the def's name and material for a part, with its path, within the transform `outer`.
+vplResult vplScene_AddPart(vplScene* scene, const vplAffine* outer, const vplModelPart* part,
+                           const vplObjectDef* def);
 
 // Reads the bytes of a file into a mesh whose triangles all have one material of the scene.
 typedef vplResult vplReadMeshFcn(vplText* bytes, vplArena* scratch, int material, vplRawMesh* out);

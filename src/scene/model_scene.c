@@ -219,16 +219,14 @@ static bool emits(const vplScene* scene, float limit)
 // Adds an object for each place of a mesh in the file.
 static vplResult addObjects(vplScene* scene, const char* path, vplModel* model)
 {
+    static const vplAffine same = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     TRY(vplScene_ReadModel(scene, path, true, model));
     for (size_t i = 0; i < model->count; i++) {
         const vplModelPart* part = &model->parts[i];
         vplObjectDef object = vplDefaultObjectDef();
         object.name = part->name != NULL ? part->name : vplBaseName(path);
-        object.type = VPL_OBJECT_MESH;
-        object.mesh = part->mesh;
         object.material = -1;
-        object.transform = vplAffine_ToMat4(&part->toModel);
-        TRY(vplScene_AddObject(scene, &object, NULL));
+        TRY(vplScene_AddPart(scene, &same, part, &object));
     }
     return VPL_SUCCESS;
 }

@@ -382,6 +382,7 @@ vplResult vplScene_SetTransform(vplScene* scene, int object, const vplMat4* tran
     REQUIRE(CONTEXT_OF(scene), scene, transform);
     TRY(checkIndex(scene, "object", object, scene->objectCount));
     TRY(vplScene_ReportFault(scene, "vplScene_SetTransform: ", vplCheckTransform(transform)));
+    vplScene_DropMover(scene, object);
     scene->objects[object].transform = *transform;
     vplScene_Touch(scene, true);
     return VPL_SUCCESS;

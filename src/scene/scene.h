@@ -23,6 +23,12 @@ typedef struct vplEmitter {
     vplTrack track;
 } vplEmitter;
 
+// The keyframes of an object that moves.
+typedef struct vplMover {
+    int object, count;
+    vplTransformKey* keys;
+} vplMover;
+
 typedef struct vplSceneTexture {
     vplTextureDef def; // without texels
     struct vplTexture* decoded;
@@ -42,15 +48,20 @@ struct vplScene {
     vplMeshDef* meshes;
     vplObjectDef* objects;
     vplEmitter* emitters;
+    vplMover* movers;
     vplEnvironmentDef environment;
     float* environmentPixels; // in the arena
     int sun;                  // 1 + index of the environment's emitter; 0: none
-    int cameraCount, textureCount, materialCount, meshCount, objectCount, emitterCount;
-    size_t cameraCapacity, textureCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
+    int cameraCount, textureCount, materialCount, meshCount, objectCount, emitterCount, moverCount;
+    size_t cameraCapacity, textureCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity,
+        moverCapacity;
 };
 
 // Notes a change; of surfaces: of anything but cameras and emitters.
 void vplScene_Touch(vplScene* scene, bool surfaces);
+
+// Forgets the path of an object, if it has one. It stays where it is.
+void vplScene_DropMover(vplScene* scene, int object);
 
 // Fails unless an object of this type and mesh may have the material.
 vplResult vplScene_CheckObjectMaterial(const vplScene* scene, vplObjectType type, int mesh, int material);

@@ -124,10 +124,9 @@ static vplResult addParts(vplSceneLoader* l, const vplJson* object, vplObjectDef
     const vplAffine outer = vplAffine_FromMat4(&def->transform);
     for (size_t i = 0; i < model->count; i++) {
         const vplAffine whole = vplAffine_Multiply(&outer, &model->parts[i].toModel);
-        def->mesh = model->parts[i].mesh;
-        def->transform = vplAffine_ToMat4(&whole);
-        TRY(vplJson_ReportFault(object, vplCheckTransform(&def->transform)));
-        TRY(vplScene_AddObject(l->scene, def, NULL));
+        const vplMat4 transform = vplAffine_ToMat4(&whole);
+        TRY(vplJson_ReportFault(object, vplCheckTransform(&transform)));
+        TRY(vplScene_AddPart(l->scene, &outer, &model->parts[i], def));
     }
     return VPL_SUCCESS;
 }

@@ -18,6 +18,9 @@
 #include <math.h>
 #include <string.h>
 
+// Emitters that light a pixel, for each that lights a hit, of which a pixel has many.
+enum { PER_HIT = 16 };
+
 // Only a D far larger than a scene of white walls, where roulette ends no walk, comes near this.
 enum { MAX_BOUNCES = 1024 };
 
@@ -246,6 +249,7 @@ vplResult vplCompensator_Open(vplShading* shading)
                          .direct = {.emitters = def->emitters,
                                     .shadows = def->shadows,
                                     .emitterCount = def->emitterCount,
+                                    .perPoint = (shade->emittersPerPoint + PER_HIT - 1) / PER_HIT,
                                     .weight = 1,
                                     .areaLights = def->areaLights,
                                     .areaLightCount = def->areaLightCount,
@@ -255,5 +259,6 @@ vplResult vplCompensator_Open(vplShading* shading)
                          .areaLightDistance = areaLightDistance,
                          .areaLightInverseClamp = vplInverseSquare(areaLightDistance)};
     shading->compensation = compensator;
-    return vplDirectLight_Open(&compensator->direct, shading->arena, VPL_LIGHTING_PHYSICAL);
+    return vplDirectLight_Open(&compensator->direct, shading->geometry, shading->arena,
+                               VPL_LIGHTING_PHYSICAL);
 }

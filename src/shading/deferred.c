@@ -14,7 +14,8 @@ void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn
     const bool smooth = def->output == VPL_OUTPUT_RADIANCE || def->output == VPL_OUTPUT_BACKGROUND;
     framebuffer->samples = smooth ? shading->samples : 0;
     framebuffer->planeCount = VPL_PLANE_POSITION + 3;
-    shading->smoothsRims = framebuffer->samples > 0 && shading->direct.emitterCount > 0;
+    shading->smoothsRims = framebuffer->samples > 0 && shading->direct.emitterCount > 0 &&
+                           shading->direct.tree == NULL; // noise has no rims
     framebuffer->scratchBytes =
         offsetof(vplTileSums, emitted) + (shading->smoothsRims ? sizeof((vplTileSums*)0)->emitted : 0);
     for (int k = 0; k < 3; k++) { // the plane of triangles says where something was written

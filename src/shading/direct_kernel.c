@@ -106,9 +106,14 @@ void VPL_KERNEL(vplAddEmitters)(const vplShading* s, const vplDirectLight* direc
 {
     vplRayStarts starts;
     vplReceiver receiver = {s, points, NULL, rays};
-    for (int i = 0; i < direct->emitterCount; i++) {
+    const bool chooses = direct->tree != NULL;
+    if (chooses) {
+        vplAddChosenEmitters(s, direct, points, irradiance, rays);
+    }
+    for (int i = chooses ? direct->firstParallel : 0; i < direct->emitterCount; i++) {
         float amount[VPL_LANES];
-        if (!emitterCosine(points->surface, &direct->rays[i], amount)) {
+        if ((chooses && !direct->rays[i].parallel) ||
+            !emitterCosine(points->surface, &direct->rays[i], amount)) {
             continue;
         }
         shadowEmitter(&receiver, &starts, direct, i, amount);

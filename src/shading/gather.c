@@ -32,7 +32,8 @@ static bool sharesLight(const vplShadeDef* def)
 }
 
 // Each hit is lit by one area light's point and one emitter, as if all were like it.
-static vplResult openDirect(vplArena* arena, const vplGatherDef* def, vplGather* gather)
+static vplResult openDirect(const vplGeometry* geometry, vplArena* arena, const vplGatherDef* def,
+                            vplGather* gather)
 {
     const size_t points = (size_t)def->areaLightCount, emitters = (size_t)def->emitterCount;
     vplShadeLight* areaLights = vplArena_Alloc(arena, points, sizeof *areaLights);
@@ -51,7 +52,7 @@ static vplResult openDirect(vplArena* arena, const vplGatherDef* def, vplGather*
                                       .areaLights = areaLights,
                                       .areaLightCount = def->areaLightCount,
                                       .areaLightInverseClamp = vplInverseSquare(def->areaLightMinDistance)};
-    return vplDirectLight_Open(&gather->direct, arena, VPL_LIGHTING_PHYSICAL);
+    return vplDirectLight_Open(&gather->direct, geometry, arena, VPL_LIGHTING_PHYSICAL);
 }
 
 vplResult vplGather_Open(vplShading* shading)
@@ -66,7 +67,7 @@ vplResult vplGather_Open(vplShading* shading)
     gather->sobol = vplSobol_Make();
     gather->side = sharesLight(def) ? def->interleave : 1;
     shading->gather = gather;
-    return openDirect(shading->arena, def->gather, gather);
+    return openDirect(shading->geometry, shading->arena, def->gather, gather);
 }
 
 // ---- one step of all walks

@@ -56,10 +56,8 @@ void vplFindRayStarts(const vplShading* shading, const vplPoints* points, vplRay
     }
 }
 
-// Sets amount to 0 where something is on the way from the point, of length 1 (parallel: any length), and
-// where the way leads behind the triangle. Lanes of amount 0 cast no ray.
-static void castShadowRays(const vplReceiver* r, const vplVec3 way[VPL_LANES], bool parallel,
-                           float amount[VPL_LANES])
+void vplCastShadowRays(const vplReceiver* r, const vplVec3 way[VPL_LANES], bool parallel,
+                       float amount[VPL_LANES])
 {
     const vplGeometry* g = r->shading->geometry;
     const vplSurface* plane = r->points->plane;
@@ -88,7 +86,7 @@ void vplCastEmitterRays(const vplReceiver* receiver, const vplEmitterRay* emitte
                  : needed          ? vplSub(emitter->position, receiver->starts->hit[l].position)
                                    : vplVec(0, 0, 0);
     }
-    castShadowRays(receiver, way, emitter->parallel, amount);
+    vplCastShadowRays(receiver, way, emitter->parallel, amount);
 }
 
 static void castLightRays(const vplReceiver* r, const vplShadeLight* light, float visible[VPL_LANES])
@@ -98,7 +96,7 @@ static void castLightRays(const vplReceiver* r, const vplShadeLight* light, floa
         const bool needed = visible[l] > 0 && r->points->triangle[l] >= 0;
         way[l] = needed ? vplWayTo(light, r->starts->hit[l].position) : vplVec(0, 0, 0);
     }
-    castShadowRays(r, way, false, visible);
+    vplCastShadowRays(r, way, false, visible);
 }
 
 // ---- lights with shadows of their own

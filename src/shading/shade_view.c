@@ -25,6 +25,7 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
                    .shadows = def->shadows,
                    .maps = def->emitterMaps,
                    .emitterCount = def->emitterCount,
+                   .perPoint = documented ? 0 : def->emittersPerPoint,
                    .weight = documented && def->particleCount > 0 ? 1 / (float)def->particleCount : 1,
                    .areaLights = def->areaLights,
                    .areaLightCount = def->areaLightCount,
@@ -58,7 +59,31 @@ static vplResult makeObjects(vplShading* s)
     return VPL_SUCCESS;
 }
 
-vplResult vplDirectLight_Open(vplDirectLight* direct, vplArena* arena, vplLighting lighting)
+static vplResult makeTree(vplDirectLight* direct, const vplGeometry* geometry, vplArena* arena)
+{
+    vplEmission* emission;
+    vplEmitterTree* tree = NULL;
+    TRY(vplEmission_Create(geometry, direct->emitters, direct->emitterCount, &emission));
+    const int count = emission->environment >= 0 ? emission->environment : emission->firstTriangle;
+    int* emitterOf = vplArena_Alloc(arena, (size_t)count, sizeof *emitterOf);
+    vplResult result = vplArena_Check(arena);
+    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
+        emitterOf[i] = emission->sources[i].emitter;
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplEmitterTree_Create(arena, emission, 0, count, &tree);
+    }
+    while (direct->firstParallel < direct->emitterCount && !direct->rays[direct->firstParallel].parallel) {
+        direct->firstParallel++;
+    }
+    direct->tree = tree;
+    direct->emitterOf = emitterOf;
+    vplEmission_Destroy(emission);
+    return result;
+}
+
+vplResult vplDirectLight_Open(vplDirectLight* direct, const vplGeometry* geometry, vplArena* arena,
+                              vplLighting lighting)
 {
     vplEmitterRay* rays = vplArena_Alloc(arena, (size_t)direct->emitterCount, sizeof *rays);
     TRY(vplArena_Check(arena));
@@ -76,7 +101,8 @@ vplResult vplDirectLight_Open(vplDirectLight* direct, vplArena* arena, vplLighti
                                   .falloff = lighting == VPL_LIGHTING_PHYSICAL};
     }
     direct->rays = rays;
-    return VPL_SUCCESS;
+    return direct->perPoint > 0 && direct->perPoint < direct->emitterCount ? makeTree(direct, geometry, arena)
+                                                                           : VPL_SUCCESS;
 }
 
 vplResult vplMakeColumns(vplShading* s)
@@ -146,7 +172,7 @@ static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats
     framebuffer.firstRow = s->firstRow;
     framebuffer.endRow = s->endRow;
     TRY(makeObjects(s));
-    TRY(vplDirectLight_Open(&s->direct, s->arena, s->def->lighting));
+    TRY(vplDirectLight_Open(&s->direct, s->geometry, s->arena, s->def->lighting));
     TRY(vplCompensator_Open(s));
     TRY(vplGather_Open(s));
     TRY(strategy->open(s, &framebuffer));

@@ -4,6 +4,7 @@
 #define VPL_SHADING_SHADING_H
 
 #include "base/arena.h"
+#include "geometry/emitter_tree.h"
 #include "shading/kernels.h"
 
 // ---- light
@@ -24,7 +25,11 @@ typedef struct vplDirectLight {
     const vplReflectiveMap* const*
         maps; // one per emitter or NULL, entries too: its shadow comes from this map
     int emitterCount;
-    float weight; // factor of all emitters: documented 1/N, else 1
+    float weight;               // factor of all emitters: documented 1/N, else 1
+    int perPoint;               // points and spots that light a point, chosen from the tree; 0: all do
+    const vplEmitterTree* tree; // of points and spots; NULL: all emitters light a point
+    const int* emitterOf;       // by source of the tree
+    int firstParallel; // directional emitter, which the tree does not hold; emitterCount: there is none
     const vplShadeLight* areaLights;
     int areaLightCount;
     float areaLightInverseClamp;
@@ -41,8 +46,9 @@ typedef struct vplLightList {
     float* columns[6];      // px .. nz, for culling; NULL: none is culled
 } vplLightList;
 
-// Makes the emitter rays in the arena.
-vplResult vplDirectLight_Open(vplDirectLight* direct, vplArena* arena, vplLighting lighting);
+// Makes the emitter rays in the arena, and the tree where fewer emitters light a point than there are.
+vplResult vplDirectLight_Open(vplDirectLight* direct, const vplGeometry* geometry, vplArena* arena,
+                              vplLighting lighting);
 
 // The map that an emitter's shadow is taken from, or NULL.
 static inline const vplReflectiveMap* vplDirectLight_Map(const vplDirectLight* direct, int emitter)
@@ -234,6 +240,15 @@ typedef struct vplReceived {
 // is not complete then.
 bool vplReceiveLight(const vplReceiver* receiver, const vplShadeLight* light, const vplHemiMap* map,
                      float inverseClamp, vplReceived* out);
+
+// Sets amount to 0 where something is on the way from the point, of length 1 (parallel: any length), and
+// where the way leads behind the triangle. Lanes of amount 0 cast no ray. The receiver must have starts.
+void vplCastShadowRays(const vplReceiver* receiver, const vplVec3 way[VPL_LANES], bool parallel,
+                       float amount[VPL_LANES]);
+
+// Adds the irradiance of points and spots that the tree chooses, with shadows, and counts the rays it casts.
+void vplAddChosenEmitters(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
+                          float irradiance[3][VPL_LANES], int64_t* rays);
 
 // Sets amount to 0 where something is between a point and an emitter. Lanes of amount 0 cast no ray. The receiver must
 // have starts.

@@ -112,15 +112,15 @@ vplResult vplMakeReflectiveMaps(const vplRun* run, void** resultOut)
 {
     const vplPlan* plan = run->plan;
     vplReflectiveMaps* maps = vplArena_Alloc(run->arena, 1, sizeof *maps);
-    vplReflectiveMap** each = vplArena_AllocZero(run->arena, (size_t)plan->emitterCount, sizeof *each);
+    vplReflectiveMap** each = vplArena_AllocZero(run->arena, (size_t)plan->mapEmitterCount, sizeof *each);
     TRY(vplArena_Check(run->arena));
-    *maps = (vplReflectiveMaps){each, plan->emitterCount};
+    *maps = (vplReflectiveMaps){each, plan->mapEmitterCount};
     *resultOut = maps;
     for (int i = 0; i < maps->count; i++) {
-        const vplRgb intensity = plan->emitters[i].intensity;
+        const vplRgb intensity = plan->mapEmitters[i].intensity;
         if (intensity.r > 0 || intensity.g > 0 || intensity.b > 0) {
             vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
-            def.emitter = plan->emitters[i];
+            def.emitter = plan->mapEmitters[i];
             def.size = plan->options.shadow.rsmSize;
             vplRun_BeginPart(run, i, maps->count);
             TRY(vplReflectiveMap_Create(run->results[VPL_STAGE_GEOMETRY], &def, run->progress, run->runner,

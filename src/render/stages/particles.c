@@ -63,8 +63,10 @@ vplResult vplMakeParticles(const vplRun* run, void** resultOut)
         TRY(placeByView(run, &def, &set));
     } else {
         def.maps = maps != NULL ? (const vplReflectiveMap* const*)maps->maps : NULL;
-        TRY(vplSimulateParticles(run->results[VPL_STAGE_GEOMETRY], plan->emitters, plan->emitterCount, &def,
-                                 &set));
+        const bool mapped = maps != NULL; // where there are many emitters, a sample of them has maps
+        TRY(vplSimulateParticles(run->results[VPL_STAGE_GEOMETRY],
+                                 mapped ? plan->mapEmitters : plan->emitters,
+                                 mapped ? plan->mapEmitterCount : plan->emitterCount, &def, &set));
     }
     *resultOut = set;
     return VPL_SUCCESS;

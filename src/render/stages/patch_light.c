@@ -107,12 +107,16 @@ static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* lig
     vplRgb* irradiance = vplArena_Alloc(run->scratch, points, sizeof *irradiance);
     TRY(vplArena_Check(run->scratch));
     *chunk = (Chunk){.points = places, .irradiance = irradiance, .light = light};
+    // The points of a side share their noise, so few choices at each of them are enough.
+    const int samples = run->plan->options.radiosity.lightSamples;
+    const int chosen = (run->plan->emittersPerPoint + samples - 1) / samples;
     const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
     const int sky = area != NULL ? area->skyCount : 0; // area lights are patches that emit
     const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                              .emitters = run->plan->emitters,
                              .shadows = shadows,
                              .emitterCount = emitterCount,
+                             .emittersPerPoint = chosen,
                              .areaLights = sky > 0 ? area->lights + (area->count - sky) : NULL,
                              .areaLightCount = sky};
     for (int first = 0; first < sideCount; first += CHUNK_SIDES) {

@@ -180,6 +180,7 @@ static vplShadeDef describe(const vplRun* run)
                              o->method == VPL_METHOD_DIRECT ? 1 : vplParticlesOfPass(run->plan, run->pass),
                          .firstRow = run->firstRow,
                          .endRow = run->endRow,
+                         .emittersPerPoint = run->plan->emittersPerPoint,
                          .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL,
                          .progress = run->progress,
                          .progressUser = run->runner};
