@@ -155,18 +155,6 @@ typedef struct vplMemoryFile {
     size_t size;
 } vplMemoryFile;
 
-// Makes reading look for files among these first, by name, and on disk for what is not among them. They must last until
-// another call; NULL with a count of 0 (default): only disk. vplScene_LoadMemory sets them for its own duration.
-void vplContext_SetFiles(vplContext* context, const vplMemoryFile* files, int count);
-
-// Called on the thread that reads with each file that was read from disk, or from a pipe, as a whole. The bytes are gone
-// when it returns.
-typedef void vplFileFcn(void* user, const vplMemoryFile* file);
-
-// Tells `fcn` of all files that are read, so that a scene with what it names can be sent to another machine, where
-// vplContext_SetFiles takes the files. NULL (default): nobody is told.
-void vplContext_SetFileObserver(vplContext* context, vplFileFcn* fcn, void* user);
-
 // The version of the library, VPL_VERSION_STRING of its headers.
 const char* vplGetVersion(void);
 

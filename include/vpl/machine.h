@@ -24,6 +24,18 @@ int vplContext_GetWorkerCount(const vplContext* context);
 // VPL_OUT_OF_MEMORY.
 vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size);
 
+// Makes reading look for files among these first, by name, and on disk for what is not among them. They must last until
+// another call; NULL with a count of 0 (default): only disk. vplScene_LoadMemory sets them for its own duration.
+void vplContext_SetFiles(vplContext* context, const vplMemoryFile* files, int count);
+
+// Called on the thread that reads with each file that was read from disk, or from a pipe, as a whole. The bytes are gone
+// when it returns.
+typedef void vplFileFcn(void* user, const vplMemoryFile* file);
+
+// Tells `fcn` of all files that are read, so that a scene with what it names can be sent to another machine, where
+// vplContext_SetFiles takes the files. NULL (default): nobody is told.
+void vplContext_SetFileObserver(vplContext* context, vplFileFcn* fcn, void* user);
+
 VPL_HEADER_END
 
 #endif

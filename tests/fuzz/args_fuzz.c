@@ -28,7 +28,7 @@ static void requireOptions(vplRenderOptions options)
     const vplOption* rows = vplGetOptions(&count);
     for (int i = 0; i < count; i++) { // what was set can be written and set again
         char text[64];
-        REQUIRE(rows[i].kind == VPL_OPTION_PART ||
+        MUST(rows[i].kind == VPL_OPTION_PART ||
                 (vplRenderOptions_Get(&options, rows[i].name, text, sizeof text) == VPL_SUCCESS &&
                  vplRenderOptions_Set(&options, rows[i].name, text) == VPL_SUCCESS));
     }
@@ -39,12 +39,12 @@ static void requireSentences(const char* text, bool parsed)
 {
     int lines = 0;
     for (const char* line = text; *line != 0; lines++) {
-        REQUIRE(strncmp(line, "vpl: ", 5) == 0 && line[5] != 0);
-        REQUIRE(!parsed || strncmp(line, "vpl: warning: ", 14) == 0);
-        REQUIRE(strchr(line, '\n') != NULL);
+        MUST(strncmp(line, "vpl: ", 5) == 0 && line[5] != 0);
+        MUST(!parsed || strncmp(line, "vpl: warning: ", 14) == 0);
+        MUST(strchr(line, '\n') != NULL);
         line = strchr(line, '\n') + 1;
     }
-    REQUIRE(parsed || lines == 1);
+    MUST(parsed || lines == 1);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
@@ -54,10 +54,10 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
     size_t length = 0;
     FILE* usual = stderr;
     Arguments arguments;
-    REQUIRE(copy != NULL);
+    MUST(copy != NULL);
     const int count = cut(copy, words);
     FILE* kept = open_memstream(&said, &length);
-    REQUIRE(kept != NULL);
+    MUST(kept != NULL);
     stderr = kept;
     if (findCommand(words[1]) != NULL) {
         const bool parsed = parseArguments(count, words, &arguments);
@@ -75,7 +75,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
         stdout = screen;
         stderr = usual;
         fclose(kept);
-        REQUIRE((code == EXIT_DONE || code == EXIT_USAGE) && length > 0);
+        MUST((code == EXIT_DONE || code == EXIT_USAGE) && length > 0);
     }
     free(said);
     free(copy);

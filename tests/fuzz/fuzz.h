@@ -12,7 +12,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size);
 
 // States a condition that must hold for every input; both libFuzzer and the replay notice abort().
-#define REQUIRE(condition)                                                                                   \
+#define MUST(condition)                                                                                   \
     do {                                                                                                     \
         if (!(condition)) {                                                                                  \
             fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition);                                  \
@@ -54,13 +54,13 @@ static inline vplContext* openFuzzContext(FuzzLog* log)
     def.logUser = log;
     def.workerCount = 1;
     vplContext* context = NULL;
-    REQUIRE(vplContext_Create(&def, &context) == VPL_SUCCESS);
+    MUST(vplContext_Create(&def, &context) == VPL_SUCCESS);
     return context;
 }
 
 static inline void closeFuzzContext(vplContext* context)
 {
-    REQUIRE(vplContext_GetBytes(context) == 0);
+    MUST(vplContext_GetBytes(context) == 0);
     vplContext_Destroy(context);
 }
 

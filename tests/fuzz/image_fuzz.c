@@ -18,11 +18,11 @@ static void requireRoundTrip(vplContext* context, const vplImage* image, vplEnco
     vplWriteOptions options = vplDefaultWriteOptions();
     vplByteBuffer buffer = {.context = context};
     vplImage* again = NULL;
-    REQUIRE(encode(image, &options, &buffer) == VPL_SUCCESS && !buffer.failed);
-    REQUIRE(decode(context, "again", buffer.bytes, buffer.size, &again) == VPL_SUCCESS);
+    MUST(encode(image, &options, &buffer) == VPL_SUCCESS && !buffer.failed);
+    MUST(decode(context, "again", buffer.bytes, buffer.size, &again) == VPL_SUCCESS);
     size_t bytes = 3 * sizeof(float) * (size_t)image->width * (size_t)image->height;
-    REQUIRE(again->width == image->width && again->height == image->height);
-    REQUIRE(memcmp(again->pixels, image->pixels, bytes) == 0);
+    MUST(again->width == image->width && again->height == image->height);
+    MUST(memcmp(again->pixels, image->pixels, bytes) == 0);
     vplImage_Destroy(again);
     vplFree(context, buffer.bytes);
 }
@@ -36,14 +36,14 @@ static void requireComparison(const vplImage* image)
         finite = finite && isfinite(image->pixels[i]);
     }
     vplResult result = vplImage_Compare(image, image, &comparison);
-    REQUIRE(result == (finite ? VPL_SUCCESS : VPL_INVALID_ARGUMENT));
-    REQUIRE(result != VPL_SUCCESS || (comparison.rmse == 0 && comparison.relmse == 0));
+    MUST(result == (finite ? VPL_SUCCESS : VPL_INVALID_ARGUMENT));
+    MUST(result != VPL_SUCCESS || (comparison.rmse == 0 && comparison.relmse == 0));
     if ((size_t)image->width * (size_t)image->height > 256) {
         return; // the two checks below are slow
     }
     double ssim = 1, flip = 0;
-    REQUIRE(vplImage_Ssim(image, image, &ssim, NULL) == result && ssim == 1);
-    REQUIRE(vplImage_Flip(image, image, VPL_DEFAULT_PPD, &flip, NULL) == result && flip == 0);
+    MUST(vplImage_Ssim(image, image, &ssim, NULL) == result && ssim == 1);
+    MUST(vplImage_Flip(image, image, VPL_DEFAULT_PPD, &flip, NULL) == result && flip == 0);
 }
 
 // Requires that any bytes become a texture, maybe a grey one, whose look-ups are reflectances.
@@ -59,16 +59,16 @@ static void tryTexture(const char* name, const uint8_t* bytes, size_t size)
                                  .where = "fuzz:1:1",
                                  .wrapV = VPL_WRAP_MIRROR,
                                  .otherwise = 0.5f};
-    REQUIRE(vplScene_Create(context, &scene) == VPL_SUCCESS);
+    MUST(vplScene_Create(context, &scene) == VPL_SUCCESS);
     const vplResult result = vplScene_LoadTexture(scene, &file, &index);
-    REQUIRE(result == VPL_OUT_OF_MEMORY || (result == VPL_SUCCESS && index == 0)); // memory is limited
+    MUST(result == VPL_OUT_OF_MEMORY || (result == VPL_SUCCESS && index == 0)); // memory is limited
     for (int i = 0; i < 8 && result == VPL_SUCCESS; i++) {
         float rgba[4];
         const vplTextureArea area = {
             .u = 0.37 * i, .v = -0.21 * i, .longU = 0.01f * (float)(i * i), .shortV = 0.03f};
         vplTexture_Lookup(scene->textures[0].decoded, &area, rgba);
         for (int c = 0; c < 4; c++) {
-            REQUIRE(rgba[c] >= 0 && rgba[c] <= 1);
+            MUST(rgba[c] >= 0 && rgba[c] <= 1);
         }
     }
     vplScene_Destroy(scene);
@@ -82,7 +82,7 @@ static void tryDecoder(vplDecodeFcn* decoder, const uint8_t* bytes, size_t size)
     vplImage* image = NULL;
     vplResult result = decoder(context, "picture", bytes, size, &image);
     if (result == VPL_SUCCESS) {
-        REQUIRE(log.errors == 0 && image->width >= 1 && image->height >= 1);
+        MUST(log.errors == 0 && image->width >= 1 && image->height >= 1);
         vplImage_Hash(image);
         if ((size_t)image->width * (size_t)image->height <= 4096) {
             requireRoundTrip(context, image, vplEncodePfm, vplDecodePfm);
@@ -93,8 +93,8 @@ static void tryDecoder(vplDecodeFcn* decoder, const uint8_t* bytes, size_t size)
         }
         vplImage_Destroy(image);
     } else {
-        REQUIRE(image == NULL && log.errors == 1 && isPrintable(log.message));
-        REQUIRE(result == VPL_PARSE_ERROR || result == VPL_OUT_OF_MEMORY || result == VPL_INVALID_ARGUMENT);
+        MUST(image == NULL && log.errors == 1 && isPrintable(log.message));
+        MUST(result == VPL_PARSE_ERROR || result == VPL_OUT_OF_MEMORY || result == VPL_INVALID_ARGUMENT);
     }
     closeFuzzContext(context);
 }

@@ -15,25 +15,25 @@ static inline void requireMeshes(const vplScene* scene)
 {
     for (int m = 0; m < vplScene_GetMeshCount(scene); m++) {
         const vplMeshDef* mesh = vplScene_GetMesh(scene, m);
-        REQUIRE(vplCheckMesh(mesh, vplScene_GetMaterialCount(scene)).field == NULL &&
+        MUST(vplCheckMesh(mesh, vplScene_GetMaterialCount(scene)).field == NULL &&
                 mesh->triangleCount > 0);
         for (int i = 0; mesh->normals != NULL && i < mesh->vertexCount; i++) {
             const vplVec3 n = mesh->normals[i];
-            REQUIRE(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
+            MUST(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
         }
     }
     for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
-        REQUIRE(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field ==
+        MUST(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field ==
                 NULL);
     }
     for (int i = 0; i < vplScene_GetObjectCount(scene); i++) {
-        REQUIRE(vplCheckTransform(&vplScene_GetObject(scene, i)->transform).field == NULL);
+        MUST(vplCheckTransform(&vplScene_GetObject(scene, i)->transform).field == NULL);
     }
     for (int i = 0; i < vplScene_GetEmitterCount(scene); i++) {
-        REQUIRE(vplCheckEmitter(vplScene_GetEmitter(scene, i)).field == NULL);
+        MUST(vplCheckEmitter(vplScene_GetEmitter(scene, i)).field == NULL);
     }
     for (int i = 0; i < vplScene_GetCameraCount(scene); i++) {
-        REQUIRE(vplCheckCamera(vplScene_GetCamera(scene, i)).field == NULL);
+        MUST(vplCheckCamera(vplScene_GetCamera(scene, i)).field == NULL);
     }
 }
 
@@ -46,13 +46,13 @@ static inline uint64_t loadModelScene(const char* path)
     uint64_t hash = 0;
     const vplResult result = vplScene_Load(context, path, &scene);
     if (result == VPL_SUCCESS) {
-        REQUIRE(log.errors == 0 && isPrintable(log.message));
+        MUST(log.errors == 0 && isPrintable(log.message));
         requireMeshes(scene);
         hash = vplScene_GetHash(scene) | 1;
     } else {
-        REQUIRE(result == VPL_PARSE_ERROR || result == VPL_OUT_OF_MEMORY || result == VPL_LIMIT);
-        REQUIRE(scene == NULL && log.errors >= 1 && isPrintable(log.message));
-        REQUIRE(result != VPL_PARSE_ERROR ||
+        MUST(result == VPL_PARSE_ERROR || result == VPL_OUT_OF_MEMORY || result == VPL_LIMIT);
+        MUST(scene == NULL && log.errors >= 1 && isPrintable(log.message));
+        MUST(result != VPL_PARSE_ERROR ||
                 (log.errors == 1 && strncmp(log.message, path, strlen(path)) == 0));
     }
     vplScene_Destroy(scene);
@@ -65,10 +65,10 @@ static inline void fuzzModel(const uint8_t* bytes, size_t size, const char* endi
     char path[64];
     snprintf(path, sizeof path, "/tmp/vpl-fuzz-%ld.%s", (long)getpid(), ending);
     FILE* file = fopen(path, "wb");
-    REQUIRE(file != NULL && fwrite(bytes, 1, size, file) == size);
+    MUST(file != NULL && fwrite(bytes, 1, size, file) == size);
     fclose(file);
     const uint64_t hash = loadModelScene(path);
-    REQUIRE(loadModelScene(path) == hash);
+    MUST(loadModelScene(path) == hash);
     unlink(path);
 }
 

@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
                               "3/1\nusemtl b c\nf 1 3/-1 2\n\x1F";
     const size_t start = sizeof obj - 1;
     uint8_t* all = malloc(start + size);
-    REQUIRE(all != NULL);
+    MUST(all != NULL);
     memcpy(all, obj, start);
     if (size > 0) {
         memcpy(all + start, bytes, size);

@@ -24,8 +24,8 @@ enum { OBJ_FILE = 99, MTL_FILE = 100 };
 static void writeMemoryFile(int number, const uint8_t* bytes, size_t size)
 {
     int fd = memfd_create("obj", MFD_CLOEXEC);
-    REQUIRE(fd >= 0 && dup2(fd, number) == number);
-    REQUIRE(write(number, bytes, size) == (ssize_t)size);
+    MUST(fd >= 0 && dup2(fd, number) == number);
+    MUST(write(number, bytes, size) == (ssize_t)size);
     close(fd);
 }
 
@@ -33,23 +33,23 @@ static void requireSentence(const FuzzLog* log)
 {
     int line, column, used = 0;
     const char* place = log->message + strcspn(log->message, ":"); // an mtllib may name any open file
-    REQUIRE(log->errors == 1 && isPrintable(log->message));
-    REQUIRE(strncmp(log->message, FOLDER, strlen(FOLDER)) == 0);
-    REQUIRE(sscanf(place, ":%d:%d: found %n", &line, &column, &used) == 2 && used > 0);
-    REQUIRE(line >= 1 && column >= 1 && strstr(place + used, "expected ") != NULL);
+    MUST(log->errors == 1 && isPrintable(log->message));
+    MUST(strncmp(log->message, FOLDER, strlen(FOLDER)) == 0);
+    MUST(sscanf(place, ":%d:%d: found %n", &line, &column, &used) == 2 && used > 0);
+    MUST(line >= 1 && column >= 1 && strstr(place + used, "expected ") != NULL);
 }
 
 static void requireMesh(const vplScene* scene)
 {
     const vplMeshDef* mesh = vplScene_GetMesh(scene, 0);
     vplFault fault = vplCheckMesh(mesh, vplScene_GetMaterialCount(scene));
-    REQUIRE(fault.field == NULL && mesh->triangleCount > 0 && mesh->materials != NULL);
+    MUST(fault.field == NULL && mesh->triangleCount > 0 && mesh->materials != NULL);
     for (int i = 0; mesh->normals != NULL && i < mesh->vertexCount; i++) {
         vplVec3 n = mesh->normals[i];
-        REQUIRE(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
+        MUST(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
     }
     for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
-        REQUIRE(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field ==
+        MUST(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field ==
                 NULL);
     }
 }
@@ -74,15 +74,15 @@ static uint64_t load(void)
     int mesh = -1;
     char name[32];
     snprintf(name, sizeof name, FOLDER "%d", OBJ_FILE);
-    REQUIRE(vplScene_Create(context, &scene) == VPL_SUCCESS);
+    MUST(vplScene_Create(context, &scene) == VPL_SUCCESS);
     vplResult result = vplScene_LoadObj(scene, name, &mesh);
     if (result == VPL_SUCCESS) {
-        REQUIRE(mesh == 0 && log.errors == 0 && isPrintable(log.message));
+        MUST(mesh == 0 && log.errors == 0 && isPrintable(log.message));
         requireMesh(scene);
         hash = hashMesh(scene);
     } else {
-        REQUIRE(result == VPL_PARSE_ERROR && mesh == -1);
-        REQUIRE(vplScene_GetMeshCount(scene) == 0 && vplScene_GetMaterialCount(scene) == 0);
+        MUST(result == VPL_PARSE_ERROR && mesh == -1);
+        MUST(vplScene_GetMeshCount(scene) == 0 && vplScene_GetMaterialCount(scene) == 0);
         requireSentence(&log);
     }
     vplScene_Destroy(scene);
@@ -102,7 +102,7 @@ static void requireNumber(const uint8_t* bytes, size_t size)
     text[length] = 0;
     if (vplReadNumber(text, text + length, &value)) {
         float wanted = strtof(text, &end);
-        REQUIRE(end == text + length && wanted == value);
+        MUST(end == text + length && wanted == value);
     }
 }
 
@@ -113,7 +113,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
     writeMemoryFile(OBJ_FILE, bytes, objSize);
     writeMemoryFile(MTL_FILE, split ? split + 1 : bytes, split ? size - objSize - 1 : 0);
     uint64_t hash = load();
-    REQUIRE(load() == hash);
+    MUST(load() == hash);
     close(OBJ_FILE);
     close(MTL_FILE);
     requireNumber(bytes, size);

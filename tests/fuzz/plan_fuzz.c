@@ -16,30 +16,30 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
     vplContext* context = openFuzzContext(&log);
     char name[64];
     const int fd = memfd_create("plan", MFD_CLOEXEC);
-    REQUIRE(fd >= 0 && write(fd, bytes, size) == (ssize_t)size);
+    MUST(fd >= 0 && write(fd, bytes, size) == (ssize_t)size);
     snprintf(name, sizeof name, FOLDER "%d", fd);
     vplRenderOptions options = vplDefaultRenderOptions();
     const vplRenderOptions before = options;
     uint64_t hash = 0;
     const vplResult result = vplRenderOptions_Load(context, name, &options, &hash);
-    REQUIRE(isPrintable(log.message));
+    MUST(isPrintable(log.message));
     if (result == VPL_SUCCESS) {
         int count;
         const vplOption* rows = vplGetOptions(&count);
-        REQUIRE(log.errors == 0);
+        MUST(log.errors == 0);
         for (int i = 0; i < count; i++) { // what was set can be written and set again
             char text[64];
-            REQUIRE(rows[i].kind == VPL_OPTION_PART ||
+            MUST(rows[i].kind == VPL_OPTION_PART ||
                     (vplRenderOptions_Get(&options, rows[i].name, text, sizeof text) == VPL_SUCCESS &&
                      vplRenderOptions_Set(&options, rows[i].name, text) == VPL_SUCCESS));
         }
     } else {
         int line, column, used = 0;
-        REQUIRE(result == VPL_PARSE_ERROR && log.errors == 1 &&
+        MUST(result == VPL_PARSE_ERROR && log.errors == 1 &&
                 memcmp(&options, &before, sizeof options) == 0);
-        REQUIRE(sscanf(log.message + strcspn(log.message, ":"), ":%d:%d: %n", &line, &column, &used) == 2 &&
+        MUST(sscanf(log.message + strcspn(log.message, ":"), ":%d:%d: %n", &line, &column, &used) == 2 &&
                 used > 0);
-        REQUIRE(line >= 1 && column >= 1);
+        MUST(line >= 1 && column >= 1);
     }
     close(fd);
     closeFuzzContext(context);

@@ -140,7 +140,7 @@ static vplContext* openContext(FuzzLog* log, bool wide)
     def.workerCount = wide ? 3 : 1;
     def.parallelFor = backwards;
     def.isa = wide ? VPL_ISA_AUTO : VPL_ISA_SCALAR;
-    REQUIRE(vplContext_Create(&def, &context) == VPL_SUCCESS);
+    MUST(vplContext_Create(&def, &context) == VPL_SUCCESS);
     return context;
 }
 
@@ -170,12 +170,12 @@ static uint64_t draw(Input* in, bool wide)
         in->framebuffer.planes[k].pixels = pixels[1 + k];
     }
     const vplResult result = drawAll(context, in);
-    REQUIRE(result == VPL_SUCCESS || result == VPL_INVALID_ARGUMENT);
-    REQUIRE(log.errors == (result != VPL_SUCCESS) && isPrintable(log.message));
+    MUST(result == VPL_SUCCESS || result == VPL_INVALID_ARGUMENT);
+    MUST(log.errors == (result != VPL_SUCCESS) && isPrintable(log.message));
     uint64_t hash = (uint64_t)result;
     for (int k = 0; k <= in->framebuffer.planeCount && result == VPL_SUCCESS; k++) {
         for (size_t i = 0; i < count; i++) {
-            REQUIRE(!isnan(pixels[k][i]));
+            MUST(!isnan(pixels[k][i]));
         }
         hash = vplHashFloats(hash, pixels[k], count);
     }
@@ -188,6 +188,6 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
     static Input in;
     Bytes b = {bytes, size};
     makeInput(&b, &in);
-    REQUIRE(draw(&in, false) == draw(&in, true));
+    MUST(draw(&in, false) == draw(&in, true));
     return 0;
 }

@@ -18,7 +18,7 @@ static bool replayFile(const char* path)
     size_t size = (size_t)info.st_size;
     uint8_t* bytes = malloc(size ? size : 1);
     FILE* file = fopen(path, "rb");
-    REQUIRE(bytes != NULL && file != NULL && fread(bytes, 1, size, file) == size);
+    MUST(bytes != NULL && file != NULL && fread(bytes, 1, size, file) == size);
     fclose(file);
     LLVMFuzzerTestOneInput(bytes, size);
     free(bytes);

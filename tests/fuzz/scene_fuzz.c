@@ -17,8 +17,8 @@
 static int writeMemoryFile(const uint8_t* bytes, size_t size, char* name, size_t nameSize)
 {
     int fd = memfd_create("scene", MFD_CLOEXEC);
-    REQUIRE(fd >= 0);
-    REQUIRE(write(fd, bytes, size) == (ssize_t)size);
+    MUST(fd >= 0);
+    MUST(write(fd, bytes, size) == (ssize_t)size);
     snprintf(name, nameSize, FOLDER "%d", fd);
     return fd;
 }
@@ -26,7 +26,7 @@ static int writeMemoryFile(const uint8_t* bytes, size_t size, char* name, size_t
 static void requireFinite(const vplImage* image)
 {
     for (int i = 0; i < 3 * image->width * image->height; i++) {
-        REQUIRE(isfinite(image->pixels[i]));
+        MUST(isfinite(image->pixels[i]));
     }
 }
 
@@ -48,11 +48,11 @@ static void renderEveryWay(const vplScene* scene)
         vplRenderStats stats;
         vplResult result = vplRender(scene, &options, &image, &stats);
         first = way == 0 ? result : first;
-        REQUIRE(result == first);
+        MUST(result == first);
         if (result == VPL_SUCCESS) {
             requireFinite(image);
             hash = way == 0 ? stats.imageHash : hash;
-            REQUIRE(way == VPL_ACCUMULATE_INTERLEAVED || stats.imageHash == hash);
+            MUST(way == VPL_ACCUMULATE_INTERLEAVED || stats.imageHash == hash);
         }
         vplImage_Destroy(image);
     }
@@ -66,19 +66,19 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
     int fd = writeMemoryFile(bytes, size, name, sizeof name);
     vplScene* scene = NULL;
     vplResult result = vplScene_Load(context, name, &scene);
-    REQUIRE(isPrintable(log.message));
+    MUST(isPrintable(log.message));
     if (result == VPL_SUCCESS) {
-        REQUIRE(log.errors == 0);
+        MUST(log.errors == 0);
         if (vplScene_GetObjectCount(scene) <= 8 && vplScene_GetEmitterCount(scene) <= 3) {
             renderEveryWay(scene);
         }
     } else {
-        REQUIRE(result == VPL_PARSE_ERROR && scene == NULL && log.errors == 1);
-        REQUIRE(strncmp(log.message, FOLDER, strlen(FOLDER)) == 0); // the scene file, or a mesh beside it
+        MUST(result == VPL_PARSE_ERROR && scene == NULL && log.errors == 1);
+        MUST(strncmp(log.message, FOLDER, strlen(FOLDER)) == 0); // the scene file, or a mesh beside it
         size_t file = strcspn(log.message, ":");
         int line, column, used = 0;
-        REQUIRE(sscanf(log.message + file, ":%d:%d: %n", &line, &column, &used) == 2 && used > 0);
-        REQUIRE(line >= 1 && column >= 1 && log.message[file + (size_t)used] != 0);
+        MUST(sscanf(log.message + file, ":%d:%d: %n", &line, &column, &used) == 2 && used > 0);
+        MUST(line >= 1 && column >= 1 && log.message[file + (size_t)used] != 0);
     }
     vplScene_Destroy(scene);
     close(fd);

@@ -30,7 +30,7 @@ static uint64_t renderSeed(vplContext* context, FuzzLog* log, uint64_t seed)
     }
     *log = (FuzzLog){{0}, 0};
     const uint64_t hash = renderValid(context, log, bytes, BYTES);
-    REQUIRE(vplContext_GetBytes(context) == 0);
+    MUST(vplContext_GetBytes(context) == 0);
     return hash;
 }
 
@@ -41,7 +41,7 @@ static vplContext* openContext(FuzzLog* log)
     def.log = fuzzLog;
     def.logUser = log;
     def.workerCount = 2;
-    REQUIRE(vplContext_Create(&def, &context) == VPL_SUCCESS);
+    MUST(vplContext_Create(&def, &context) == VPL_SUCCESS);
     return context;
 }
 
@@ -53,7 +53,7 @@ static size_t residentBytes(void)
 #endif
     long all, resident = 0;
     FILE* file = fopen("/proc/self/statm", "r");
-    REQUIRE(file != NULL && fscanf(file, "%ld %ld", &all, &resident) == 2);
+    MUST(file != NULL && fscanf(file, "%ld %ld", &all, &resident) == 2);
     fclose(file);
     return (size_t)resident * (size_t)sysconf(_SC_PAGESIZE);
 }
@@ -64,8 +64,8 @@ static uint64_t renderAfresh(const char* program, uint64_t seed)
     uint64_t hash = 0;
     snprintf(command, sizeof command, "'%s' --one %" PRIu64, program, seed);
     FILE* pipe = popen(command, "r");
-    REQUIRE(pipe != NULL && fscanf(pipe, "%" SCNx64, &hash) == 1);
-    REQUIRE(pclose(pipe) == 0);
+    MUST(pipe != NULL && fscanf(pipe, "%" SCNx64, &hash) == 1);
+    MUST(pclose(pipe) == 0);
     return hash;
 }
 

@@ -21,11 +21,11 @@ static vplScene* makeScene(vplContext* context)
     vplCameraDef camera = vplDefaultCameraDef();
     vplEmitterDef emitter = vplDefaultEmitterDef();
     emitter.position = (vplVec3){0, 0, 2};
-    REQUIRE(vplScene_Create(context, &scene) == VPL_SUCCESS);
-    REQUIRE(vplScene_AddMaterial(scene, &material, NULL) == VPL_SUCCESS);
-    REQUIRE(vplScene_AddObject(scene, &object, NULL) == VPL_SUCCESS);
-    REQUIRE(vplScene_AddCamera(scene, &camera, NULL) == VPL_SUCCESS);
-    REQUIRE(vplScene_AddEmitter(scene, &emitter, NULL) == VPL_SUCCESS);
+    MUST(vplScene_Create(context, &scene) == VPL_SUCCESS);
+    MUST(vplScene_AddMaterial(scene, &material, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddObject(scene, &object, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddCamera(scene, &camera, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddEmitter(scene, &emitter, NULL) == VPL_SUCCESS);
     return scene;
 }
 
@@ -46,14 +46,14 @@ static int writeState(const uint8_t* bytes, size_t size, char* name, size_t name
 {
     const size_t summed = size >= 8 ? (size - 8) & ~(size_t)3 : 0;
     uint8_t* copy = malloc(size + 1);
-    REQUIRE(copy != NULL);
+    MUST(copy != NULL);
     memcpy(copy, bytes, size);
     const uint64_t checksum = vplState_Checksum(copy, summed);
     for (size_t i = 0; i < 8 && summed > 0; i++) {
         copy[summed + i] = (uint8_t)(checksum >> 8 * i);
     }
     const int fd = memfd_create("state", MFD_CLOEXEC);
-    REQUIRE(fd >= 0 && write(fd, copy, size) == (ssize_t)size);
+    MUST(fd >= 0 && write(fd, copy, size) == (ssize_t)size);
     snprintf(name, nameSize, "/proc/self/fd/%d", fd);
     free(copy);
     return fd;
@@ -72,11 +72,11 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
         vplImage* image = NULL;
         bool done;
         log = (FuzzLog){{0}, 0};
-        REQUIRE(vplRenderer_Create(scene, &options, &r) == VPL_SUCCESS);
+        MUST(vplRenderer_Create(scene, &options, &r) == VPL_SUCCESS);
         const vplResult result = vplRenderer_Load(r, name, &done);
-        REQUIRE(isPrintable(log.message) && log.errors == (result != VPL_SUCCESS));
-        REQUIRE(vplRenderer_Step(r, &done) == VPL_SUCCESS); // also after a failure
-        REQUIRE(vplRenderer_GetImage(r, &image, NULL) == VPL_SUCCESS);
+        MUST(isPrintable(log.message) && log.errors == (result != VPL_SUCCESS));
+        MUST(vplRenderer_Step(r, &done) == VPL_SUCCESS); // also after a failure
+        MUST(vplRenderer_GetImage(r, &image, NULL) == VPL_SUCCESS);
         vplImage_Destroy(image);
         vplRenderer_Destroy(r);
     }

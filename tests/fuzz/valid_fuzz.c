@@ -68,7 +68,7 @@ static void addTexture(Bytes* b, vplScene* scene)
         texels[i] = (unsigned char)((unsigned)i * 73 % (seed + 2) * 255 / (seed + 1));
     }
     def.texels = texels;
-    REQUIRE(vplScene_AddTexture(scene, &def, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddTexture(scene, &def, NULL) == VPL_SUCCESS);
 }
 
 // Textures, holes and panes of a material.
@@ -97,7 +97,7 @@ static void addMaterial(Bytes* b, vplScene* scene)
         def.emission = lightOf(b, 1);
     }
     dress(b, scene, &def);
-    REQUIRE(vplScene_AddMaterial(scene, &def, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddMaterial(scene, &def, NULL) == VPL_SUCCESS);
 }
 
 // Triangles between few points, so that some have no area.
@@ -128,7 +128,7 @@ static int addMesh(Bytes* b, vplScene* scene)
     def.positions = points;
     def.indices = indices;
     def.vertexCount = POINTS;
-    REQUIRE(vplScene_AddMesh(scene, &def, &index) == VPL_SUCCESS);
+    MUST(vplScene_AddMesh(scene, &def, &index) == VPL_SUCCESS);
     return index;
 }
 
@@ -151,7 +151,7 @@ static void addObject(Bytes* b, FuzzLog* log, vplScene* scene, double size, vplV
     def.transform = vplMat4_FromParts(place, turns, scale);
     def.mesh = def.type == VPL_OBJECT_MESH ? addMesh(b, scene) : 0;
     const vplResult result = vplScene_AddObject(scene, &def, NULL);
-    REQUIRE(result == VPL_SUCCESS || (result == VPL_INVALID_ARGUMENT && log->errors == 1));
+    MUST(result == VPL_SUCCESS || (result == VPL_INVALID_ARGUMENT && log->errors == 1));
     log->errors = 0;
 }
 
@@ -166,7 +166,7 @@ static void addEmitter(Bytes* b, FuzzLog* log, vplScene* scene, double size, vpl
     def.outerAngle = numberIn(b, 1e-6, 1.57);
     def.innerAngle = def.outerAngle * unit(b);
     const vplResult result = vplScene_AddEmitter(scene, &def, NULL);
-    REQUIRE(result == VPL_SUCCESS || (result == VPL_INVALID_ARGUMENT && log->errors == 1));
+    MUST(result == VPL_SUCCESS || (result == VPL_INVALID_ARGUMENT && log->errors == 1));
     log->errors = 0;
 }
 
@@ -180,9 +180,9 @@ static void addCamera(Bytes* b, FuzzLog* log, vplScene* scene, double size, vplV
     def.nearPlane = size * (pick(b, 4) == 3 ? power(b, -9, 0) : 0.01);
     def.farPlane = fmax(def.nearPlane * 1.001, size * (pick(b, 4) == 3 ? power(b, -2, 6) : 10));
     if (vplScene_AddCamera(scene, &def, NULL) != VPL_SUCCESS) {
-        REQUIRE(log->errors == 1);
+        MUST(log->errors == 1);
         const vplCameraDef usual = vplDefaultCameraDef();
-        REQUIRE(vplScene_AddCamera(scene, &usual, NULL) == VPL_SUCCESS);
+        MUST(vplScene_AddCamera(scene, &usual, NULL) == VPL_SUCCESS);
     }
     log->errors = 0;
 }
@@ -206,7 +206,7 @@ static void addEnvironment(Bytes* b, vplScene* scene)
     def.rotate = unit(b) - 0.5;
     def.elevation = numberIn(b, 0, 0.5 * VPL_PI);
     def.turbidity = numberIn(b, 2, 10);
-    REQUIRE(vplScene_SetEnvironment(scene, &def) == VPL_SUCCESS);
+    MUST(vplScene_SetEnvironment(scene, &def) == VPL_SUCCESS);
 }
 
 static vplScene* makeScene(vplContext* context, Bytes* b, FuzzLog* log)
@@ -214,7 +214,7 @@ static vplScene* makeScene(vplContext* context, Bytes* b, FuzzLog* log)
     vplScene* scene;
     const double size = pick(b, 3) == 2 ? power(b, -9, 9) : 1;
     const vplVec3 middle = pick(b, 4) == 3 ? pointIn(b, size * power(b, 0, 5)) : (vplVec3){0, 0, 0};
-    REQUIRE(vplScene_Create(context, &scene) == VPL_SUCCESS);
+    MUST(vplScene_Create(context, &scene) == VPL_SUCCESS);
     addCamera(b, log, scene, size, middle);
     for (int i = pick(b, 2) ? 1 + (int)pick(b, 2) : 0; i > 0; i--) {
         addTexture(b, scene);
@@ -227,7 +227,7 @@ static vplScene* makeScene(vplContext* context, Bytes* b, FuzzLog* log)
         const vplVec3 scale = {(float)(2.5 * size), (float)(2.5 * size), (float)(2.5 * size)};
         room.type = VPL_OBJECT_BOX;
         room.transform = vplMat4_FromParts(middle, (const double[3]){0}, scale);
-        REQUIRE(vplScene_AddObject(scene, &room, NULL) == VPL_SUCCESS);
+        MUST(vplScene_AddObject(scene, &room, NULL) == VPL_SUCCESS);
     }
     for (int i = (int)pick(b, 6); i > 0; i--) {
         addObject(b, log, scene, size, middle);
@@ -341,7 +341,7 @@ static vplRenderOptions makeOptions(Bytes* b)
     int count;
     const vplOption* rows = vplGetOptions(&count);
     vplRenderOptions options = vplDefaultRenderOptions();
-    REQUIRE(vplRenderOptions_SetAll(&options, SMALL) == VPL_SUCCESS);
+    MUST(vplRenderOptions_SetAll(&options, SMALL) == VPL_SUCCESS);
     options.method = (vplMethod)pick(b, VPL_METHOD_AUTO + 1);
     for (int i = (int)pick(b, 12); i > 0; i--) {
         const vplOption* o = &rows[pick(b, (unsigned)count)];
@@ -349,9 +349,9 @@ static vplRenderOptions makeOptions(Bytes* b)
         if (o->kind != VPL_OPTION_PART && mostOf(o) + (o->low == o->high) > 0) {
             writeValue(b, o, text, sizeof text);
             const vplResult result = vplRenderOptions_Set(&options, o->name, text);
-            REQUIRE(result == VPL_SUCCESS || strchr("KCNDBOR", text[0]) != NULL); // the name of a number
+            MUST(result == VPL_SUCCESS || strchr("KCNDBOR", text[0]) != NULL); // the name of a number
             if (o->kind == VPL_OPTION_PRESET) {
-                REQUIRE(vplRenderOptions_SetAll(&options, SMALL) == VPL_SUCCESS);
+                MUST(vplRenderOptions_SetAll(&options, SMALL) == VPL_SUCCESS);
             }
         }
     }
@@ -363,7 +363,7 @@ static vplRenderOptions makeOptions(Bytes* b)
 static uint64_t hashImage(const vplImage* image)
 {
     for (size_t i = 0; i < 3 * (size_t)image->width * (size_t)image->height; i++) {
-        REQUIRE(isfinite(image->pixels[i]));
+        MUST(isfinite(image->pixels[i]));
     }
     return vplImage_Hash(image);
 }
@@ -381,9 +381,9 @@ static vplResult render(const vplScene* scene, const vplRenderOptions* options, 
     }
     if (image != NULL) {
         *hashOut = hashImage(image);
-        REQUIRE(stats.imageHash == *hashOut);
+        MUST(stats.imageHash == *hashOut);
     }
-    REQUIRE((result == VPL_SUCCESS) == (layered ? layers != NULL : image != NULL));
+    MUST((result == VPL_SUCCESS) == (layered ? layers != NULL : image != NULL));
     vplLayers_Destroy(layers);
     vplImage_Destroy(image);
     return result;
@@ -403,7 +403,7 @@ uint64_t renderValid(vplContext* context, FuzzLog* log, const uint8_t* bytes, si
     vplHistory* history = NULL;
     vplRenderOptions options = makeOptions(&b);
     if (pick(&b, 4) > 0) { // without one, statistics of what the clamp takes may take long
-        REQUIRE(vplHistory_Create(context, &history) == VPL_SUCCESS);
+        MUST(vplHistory_Create(context, &history) == VPL_SUCCESS);
     }
     options.sequence.history = history;
     vplScene* scene = makeScene(context, &b, log);
@@ -414,12 +414,12 @@ uint64_t renderValid(vplContext* context, FuzzLog* log, const uint8_t* bytes, si
         const vplResult refusal = plan->refusal;
         vplPlan_Destroy(plan);
         result = render(scene, &options, &hash);
-        REQUIRE(problem[0] == 0 || (result == refusal && strcmp(log->message, problem) == 0));
+        MUST(problem[0] == 0 || (result == refusal && strcmp(log->message, problem) == 0));
     } else if (result == VPL_SUCCESS) {
         vplPlan_Destroy(plan);
     }
-    REQUIRE(result == VPL_SUCCESS || result == VPL_INVALID_ARGUMENT || result == VPL_LIMIT);
-    REQUIRE(log->errors == (result != VPL_SUCCESS) && isPrintable(log->message));
+    MUST(result == VPL_SUCCESS || result == VPL_INVALID_ARGUMENT || result == VPL_LIMIT);
+    MUST(log->errors == (result != VPL_SUCCESS) && isPrintable(log->message));
     vplHistory_Destroy(history);
     vplScene_Destroy(scene);
     return hash + (uint64_t)result;
@@ -438,10 +438,10 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
         def.workerCount = i ? 3 : 1;
         def.parallelFor = backwards;
         vplContext* context = NULL;
-        REQUIRE(vplContext_Create(&def, &context) == VPL_SUCCESS);
+        MUST(vplContext_Create(&def, &context) == VPL_SUCCESS);
         hashes[i] = renderValid(context, &log, bytes, size);
         closeFuzzContext(context);
     }
-    REQUIRE(hashes[0] == hashes[1]);
+    MUST(hashes[0] == hashes[1]);
     return 0;
 }
