@@ -97,6 +97,7 @@ static void makeScene(void)
     MUST(vplScene_SetEnvironment(f.scene, &f.sky));
     f.cameraKey = vplMakeCameraKey(&f.camera, 0);
     f.emitterKey = vplMakeEmitterKey(&f.emitter, 0);
+    f.transformKey.transform = vplMat4_Identity();
 }
 
 static void makeGeometry(void)
@@ -111,9 +112,6 @@ static void makeGeometry(void)
     f.matrix = vplMat4_Identity();
     MUST(vplPlacement_Create(f.context, &f.matrix, &f.placement));
     f.point = (vplSurfacePoint){f.hit.position, f.hit.normal, f.hit.triangle};
-    for (int i = 0; i < VPL_LANES; i++) {
-        f.surface.ny[i] = 1;
-    }
     f.view = vplView_Create(&f.camera, 8, 8);
 }
 

@@ -3,7 +3,7 @@
 #ifndef VPL_TESTS_NULLS_FIXTURE_H
 #define VPL_TESTS_NULLS_FIXTURE_H
 
-#include <vpl/vpl.h>
+#include <vpl/stages.h>
 
 // A room of two quads, a mesh and a lamp, and everything that can be made of it.
 typedef struct Fixture {
@@ -52,7 +52,6 @@ typedef struct Fixture {
     vplShadeDef shade;
     vplCompensationDef compensation;
     vplSurfacePoint point;
-    vplSurface surface;
     vplEmitterDef emitter;
     vplPatchDraw draw;
     vplVertexGather gather;
@@ -63,6 +62,7 @@ typedef struct Fixture {
     vplCameraDef camera;
     vplCameraKey cameraKey;
     vplEmitterKey emitterKey;
+    vplTransformKey transformKey;
     vplMemoryFile file;
     vplSpeeds speeds;
     vplMachine machine;
