@@ -35,7 +35,7 @@ vplResult vplRenderer_Save(vplRenderer* renderer, const char* path);
 vplResult vplRenderer_Load(vplRenderer* renderer, const char* path, bool* doneOut);
 
 // Ends a render: gets the picture as vplRenderer_GetImage does or, if layersOut is not NULL, the layers as
-// vplRenderer_GetLayers does, and logs the error that remains. Needs no second picture in memory where the
+// vplRenderer_GetLayers does (imageOut may then be NULL), and logs the error that remains. statsOut may be NULL. Needs no second picture in memory where the
 // picture is no mean of passes. The renderer can only be destroyed after it.
 vplResult vplRenderer_Finish(vplRenderer* renderer, vplImage** imageOut, vplLayers** layersOut,
                              vplRenderStats* statsOut);

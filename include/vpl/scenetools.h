@@ -30,11 +30,11 @@ bool vplIsModelPath(const char* path);
 // Reads an OBJ file, with the MTL files that it names, as one mesh (see examples/scenes/README.md). Adds the
 // materials that its faces use (Kd reflectance, Ke emission) under the names "file.obj:name", and a grey one
 // for faces without a material. Unsupported statements are logged once each, as warnings. VPL_FILE_ERROR,
-// VPL_OUT_OF_MEMORY, VPL_LIMIT, or VPL_PARSE_ERROR with "file:line:column:" in its message.
+// VPL_OUT_OF_MEMORY, VPL_LIMIT, or VPL_PARSE_ERROR with "file:line:column:" in its message. indexOut may be NULL.
 vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut);
 
 // Reads an OBJ, PLY or STL file, by its ending, as one mesh. A PLY or STL file adds one unnamed grey material, or a white
-// one if the vertices have colours. VPL_INVALID_ARGUMENT for another ending; otherwise as vplScene_LoadObj.
+// one if the vertices have colours. VPL_INVALID_ARGUMENT for another ending; otherwise as vplScene_LoadObj; indexOut may be NULL.
 vplResult vplScene_LoadMesh(vplScene* scene, const char* path, int* indexOut);
 
 // Adds what a model file places as objects: one for an OBJ, PLY or STL file, one for each node of a glTF file that has a

@@ -55,12 +55,18 @@ static vplResult readAll(vplContext* context, const char* path, int fd, vplByteB
 
 void vplContext_SetFiles(vplContext* context, const vplMemoryFile* files, int count)
 {
+    if (context == NULL) {
+        return;
+    }
     context->files = files;
     context->fileCount = files != NULL ? count : 0;
 }
 
 void vplContext_SetFileObserver(vplContext* context, vplFileFcn* fcn, void* user)
 {
+    if (context == NULL) {
+        return;
+    }
     context->fileObserver = fcn;
     context->fileUser = user;
 }

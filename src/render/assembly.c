@@ -95,6 +95,8 @@ static vplResult checkSame(const vplAssembly* a, const vplPieceHeader* h, const 
 
 vplResult vplAssembly_CheckRenderer(const vplAssembly* a, const vplRenderer* renderer)
 {
+    const vplAssembly* assembly = a;
+    REQUIRE(CONTEXT_OF(assembly), assembly, renderer);
     vplPieceHeader own = a->first;
     if (a->first.grid.count == 0) {
         return VPL_SUCCESS;

@@ -76,6 +76,8 @@ static vplResult checkKeys(const vplScene* scene, const vplTransformKey* keys, i
 
 vplResult vplScene_SetObjectPath(vplScene* scene, int object, const vplTransformKey* keys, int count)
 {
+    REQUIRE(CONTEXT_OF(scene), scene);
+    REQUIRE_ARRAY(scene->context, keys, count);
     if (object < 0 || object >= scene->objectCount) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT, "object %d does not exist, the scene has %d",
                        object, scene->objectCount);
@@ -98,13 +100,16 @@ vplResult vplScene_SetObjectPath(vplScene* scene, int object, const vplTransform
 
 const vplTransformKey* vplScene_GetObjectPath(const vplScene* scene, int object, int* countOut)
 {
-    const vplMover* m = findMover(scene, object);
-    *countOut = m != NULL ? m->count : 0;
+    const vplMover* m = scene != NULL ? findMover(scene, object) : NULL;
+    if (countOut != NULL) {
+        *countOut = m != NULL ? m->count : 0;
+    }
     return m != NULL ? m->keys : NULL;
 }
 
 vplResult vplScene_SetFrame(vplScene* scene, double frame)
 {
+    REQUIRE(CONTEXT_OF(scene), scene);
     for (int i = 0; i < scene->moverCount; i++) { // a failure changes nothing
         const vplMat4 pose = poseAt(&scene->movers[i], frame);
         char subject[64];
