@@ -96,7 +96,7 @@ static vplResult checkSame(const vplAssembly* a, const vplPieceHeader* h, const 
 vplResult vplAssembly_CheckRenderer(const vplAssembly* a, const vplRenderer* renderer)
 {
     const vplAssembly* assembly = a;
-    REQUIRE(CONTEXT_OF(assembly), assembly, renderer);
+    REQUIRE(renderer != NULL ? renderer->runner.run.context : CONTEXT_OF(assembly), assembly, renderer);
     vplPieceHeader own = a->first;
     if (a->first.grid.count == 0) {
         return VPL_SUCCESS;
