@@ -55,13 +55,14 @@ static int beginOf(int index, int count, int side)
 vplResult vplImage_CompareRegions(const vplImage* a, const vplImage* b, int columns, int rows,
                                   vplRegion* regionsOut)
 {
-    REQUIRE(CONTEXT_OF(a) ?: CONTEXT_OF(b), a, b, regionsOut);
+    REQUIRE(CONTEXT_OF(a) ?: CONTEXT_OF(b), a, b);
     TRY(vplRequirePair(a, b));
     if (columns < 1 || columns > a->width || rows < 1 || rows > a->height) {
         return vplFail(a->context, VPL_INVALID_ARGUMENT,
                        "regions are %dx%d, must be in [1, %d] and [1, %d]: one pixel each at least", columns,
                        rows, a->width, a->height);
     }
+    REQUIRE(a->context, regionsOut); // after the counts: without room for them callers have no array
     for (int j = 0; j < rows; j++) {
         for (int i = 0; i < columns; i++) {
             vplRegion* region = &regionsOut[(size_t)j * (size_t)columns + (size_t)i];
