@@ -141,17 +141,11 @@ size_t vplContext_GetBytes(const vplContext* context)
     if (context == NULL) {
         return 0;
     }
-    if (context == NULL) {
-        return 0;
-    }
     return context->bytes;
 }
 
 void vplContext_SetMemoryLimit(vplContext* context, size_t bytes)
 {
-    if (context == NULL) {
-        return;
-    }
     if (context == NULL) {
         return;
     }
@@ -163,17 +157,11 @@ size_t vplContext_GetPeakBytes(const vplContext* context)
     if (context == NULL) {
         return 0;
     }
-    if (context == NULL) {
-        return 0;
-    }
     return context->peakBytes;
 }
 
 void vplContext_ResetPeakBytes(vplContext* context)
 {
-    if (context == NULL) {
-        return;
-    }
     if (context == NULL) {
         return;
     }
@@ -185,17 +173,11 @@ vplIsa vplContext_GetIsa(const vplContext* context)
     if (context == NULL) {
         return 0;
     }
-    if (context == NULL) {
-        return 0;
-    }
     return context->isa;
 }
 
 int vplContext_GetWorkerCount(const vplContext* context)
 {
-    if (context == NULL) {
-        return 0;
-    }
     if (context == NULL) {
         return 0;
     }
