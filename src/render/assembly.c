@@ -93,17 +93,16 @@ static vplResult checkSame(const vplAssembly* a, const vplPieceHeader* h, const 
     return VPL_SUCCESS;
 }
 
-vplResult vplAssembly_CheckRenderer(const vplAssembly* a, const vplRenderer* renderer)
+vplResult vplAssembly_CheckRenderer(const vplAssembly* assembly, const vplRenderer* renderer)
 {
-    const vplAssembly* assembly = a;
-    REQUIRE(renderer != NULL ? renderer->runner.run.context : CONTEXT_OF(assembly), assembly, renderer);
-    vplPieceHeader own = a->first;
-    if (a->first.grid.count == 0) {
+    REQUIRE(vplRenderer_ContextOf(renderer) ?: CONTEXT_OF(assembly), assembly, renderer);
+    vplPieceHeader own = assembly->first;
+    if (assembly->first.grid.count == 0) {
         return VPL_SUCCESS;
     }
     own.scene = vplRenderer_HashScene(renderer);
     TRY(vplRenderer_HashOptions(renderer, &own.options));
-    return checkSame(a, &own, "this render");
+    return checkSame(assembly, &own, "this render");
 }
 
 // Adds the passes of a band whose turn it is.

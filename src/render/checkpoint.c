@@ -203,7 +203,7 @@ static vplResult save(vplRenderer* r, const vplByteBuffer* text, const char* pat
 
 vplResult vplRenderer_Save(vplRenderer* r, const char* path)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, path);
+    REQUIRE(vplRenderer_ContextOf(r), r, path);
     vplContext* context = r->runner.run.context;
     if (partsOf(r->plan) == 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
@@ -423,7 +423,7 @@ static vplResult loadState(Loading* l)
 
 vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, path, doneOut);
+    REQUIRE(vplRenderer_ContextOf(r), r, path, doneOut);
     vplContext* context = r->runner.run.context;
     Loading l = {.renderer = r, .path = path, .stream = {.finite = true}};
     char* bytes;

@@ -35,7 +35,7 @@ static const char* findObstacle(const vplRenderer* r)
 
 vplResult vplRenderer_Divide(const vplRenderer* r, int bands, vplPieceGrid* gridOut)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, gridOut);
+    REQUIRE(vplRenderer_ContextOf(r), r, gridOut);
     const vplPlan* p = r->plan;
     const vplOutputOptions* o = &p->options.output;
     const char* obstacle = findObstacle(r);
@@ -133,7 +133,7 @@ static vplResult writePiece(vplContext* context, vplPieceHeader* h, vplImage* im
 vplResult vplRenderer_MakePiece(vplRenderer* r, const vplPieceGrid* grid, int index, uint8_t** bytesOut,
                                 size_t* sizeOut)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, grid, bytesOut, sizeOut);
+    REQUIRE(vplRenderer_ContextOf(r), r, grid, bytesOut, sizeOut);
     vplRun* run = &r->runner.run;
     vplImage* images[2] = {NULL, NULL};
     vplPieceGrid own;

@@ -144,7 +144,7 @@ static void fixEnd(const vplShown* shown, vplRenderOptions* o)
 
 vplResult vplRenderer_WritePlan(vplRenderer* r, const char* path)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, path);
+    REQUIRE(vplRenderer_ContextOf(r), r, path);
     const vplScene* scene = r->runner.run.scene;
     const vplShown shown = vplRenderer_Shown(r);
     if (shown.passes == 0) {

@@ -291,7 +291,7 @@ static vplResult review(vplRenderer* r, bool* doneOut)
 
 vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, doneOut);
+    REQUIRE(vplRenderer_ContextOf(r), r, doneOut);
     const double begin = vplClockMs();
     if (r->stamp != r->runner.run.scene->stamp) {
         return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,

@@ -73,6 +73,12 @@ vplResult vplRenderer_Plan(vplRenderer* renderer, const vplRenderOptions* option
 vplResult vplRenderer_Replace(vplRenderer* renderer, const vplRenderOptions* options, bool coarse,
                               double error);
 
+// The context of a renderer; NULL for NULL.
+static inline vplContext* vplRenderer_ContextOf(const vplRenderer* renderer)
+{
+    return renderer != NULL ? renderer->runner.run.context : NULL;
+}
+
 // Identifies what is rendered: the scene, and the caller's camera where there is one.
 uint64_t vplRenderer_HashScene(const vplRenderer* renderer);
 

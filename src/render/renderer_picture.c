@@ -157,7 +157,7 @@ static vplResult takePicture(vplRenderer* r, vplImage** imageOut)
 
 vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, imageOut);
+    REQUIRE(vplRenderer_ContextOf(r), r, imageOut);
     vplImage* image = NULL;
     if (!vplRenderer_HasPicture(r)) {
         return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
@@ -177,7 +177,7 @@ vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderSta
 
 vplResult vplRenderer_GetLayers(vplRenderer* r, vplLayers** layersOut, vplRenderStats* statsOut)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, layersOut);
+    REQUIRE(vplRenderer_ContextOf(r), r, layersOut);
     vplImage *picture = NULL, *direct = NULL;
     vplLayers* layers;
     TRY(vplRenderer_GetImage(r, &picture, NULL));

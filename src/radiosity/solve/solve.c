@@ -149,10 +149,15 @@ static vplResult solveWith(vplArena* arena, const vplTransport* transport, vplSo
     return VPL_SUCCESS;
 }
 
+static vplContext* contextOf(const vplTransport* transport)
+{
+    return transport != NULL ? CONTEXT_OF(transport->sides) : NULL;
+}
+
 vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* def, const vplRgb* source,
                             vplRgb* radiosity, vplSolveStats* statsOut)
 {
-    REQUIRE((transport != NULL ? CONTEXT_OF(transport->sides) : NULL), transport, def, source, radiosity);
+    REQUIRE(contextOf(transport), transport, def, source, radiosity);
     TRY(checkDef(transport, def));
     TRY(checkValues(transport, source, "source"));
     TRY(checkValues(transport, radiosity, "radiosity"));
@@ -208,14 +213,14 @@ static vplResult checkAndGather(const vplTransport* transport, const vplRgb* sou
 
 vplResult vplGatherRadiosity(const vplTransport* transport, const vplRgb* radiosity, vplRgb* irradianceOut)
 {
-    REQUIRE((transport != NULL ? CONTEXT_OF(transport->sides) : NULL), transport, radiosity, irradianceOut);
+    REQUIRE(contextOf(transport), transport, radiosity, irradianceOut);
     return checkAndGather(transport, NULL, radiosity, irradianceOut);
 }
 
 vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
                                vplRgb* residualOut)
 {
-    REQUIRE((transport != NULL ? CONTEXT_OF(transport->sides) : NULL), transport, source, radiosity,
+    REQUIRE(contextOf(transport), transport, source, radiosity,
             residualOut);
     return checkAndGather(transport, source, radiosity, residualOut);
 }

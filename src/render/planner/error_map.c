@@ -90,7 +90,7 @@ static void fill(const Map* m)
 
 vplResult vplRenderer_GetErrorMap(vplRenderer* r, vplImage** mapOut)
 {
-    REQUIRE((r != NULL ? r->runner.run.context : NULL), r, mapOut);
+    REQUIRE(vplRenderer_ContextOf(r), r, mapOut);
     vplContext* context = r->runner.run.context;
     Map m = {.renderer = r};
     vplImage* picture = NULL;
