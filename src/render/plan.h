@@ -45,13 +45,19 @@ double vplReflectiveMapFaces(const vplPlan* plan);
 
 vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 
-// Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.
+// Resolves the options of radiosity. Makes the patches and their sides where these are known before the render.
+vplResult vplDecidePatches(vplRunner* runner, vplPlan* plan);
+
+// Resolves the pipeline and its square of pixels. The square of radiosity stays open until `gather` is known.
+void vplDecidePipeline(vplPlan* plan);
+
 // Resolves the number of bounces of SSVP, and counts their lights.
 void vplDecideBounces(const vplRunner* runner, vplPlan* plan);
 
 // For a reader of the plan: makes the clusters of SSVP, so that their number is known.
 vplResult vplForetellClusters(vplRunner* r, const vplPlan* p);
 
+// Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.
 vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 
 // Fills in counts and bytes: measured for stages that ran already, estimated for the others.

@@ -29,8 +29,8 @@ static void requireOptions(vplRenderOptions options)
     for (int i = 0; i < count; i++) { // what was set can be written and set again
         char text[64];
         MUST(rows[i].kind == VPL_OPTION_PART ||
-                (vplRenderOptions_Get(&options, rows[i].name, text, sizeof text) == VPL_SUCCESS &&
-                 vplRenderOptions_Set(&options, rows[i].name, text) == VPL_SUCCESS));
+             (vplRenderOptions_Get(&options, rows[i].name, text, sizeof text) == VPL_SUCCESS &&
+              vplRenderOptions_Set(&options, rows[i].name, text) == VPL_SUCCESS));
     }
 }
 

@@ -12,7 +12,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size);
 
 // States a condition that must hold for every input; both libFuzzer and the replay notice abort().
-#define MUST(condition)                                                                                   \
+#define MUST(condition)                                                                                      \
     do {                                                                                                     \
         if (!(condition)) {                                                                                  \
             fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition);                                  \

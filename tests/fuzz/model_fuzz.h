@@ -15,16 +15,14 @@ static inline void requireMeshes(const vplScene* scene)
 {
     for (int m = 0; m < vplScene_GetMeshCount(scene); m++) {
         const vplMeshDef* mesh = vplScene_GetMesh(scene, m);
-        MUST(vplCheckMesh(mesh, vplScene_GetMaterialCount(scene)).field == NULL &&
-                mesh->triangleCount > 0);
+        MUST(vplCheckMesh(mesh, vplScene_GetMaterialCount(scene)).field == NULL && mesh->triangleCount > 0);
         for (int i = 0; mesh->normals != NULL && i < mesh->vertexCount; i++) {
             const vplVec3 n = mesh->normals[i];
             MUST(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
         }
     }
     for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
-        MUST(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field ==
-                NULL);
+        MUST(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field == NULL);
     }
     for (int i = 0; i < vplScene_GetObjectCount(scene); i++) {
         MUST(vplCheckTransform(&vplScene_GetObject(scene, i)->transform).field == NULL);
@@ -52,8 +50,7 @@ static inline uint64_t loadModelScene(const char* path)
     } else {
         MUST(result == VPL_PARSE_ERROR || result == VPL_OUT_OF_MEMORY || result == VPL_LIMIT);
         MUST(scene == NULL && log.errors >= 1 && isPrintable(log.message));
-        MUST(result != VPL_PARSE_ERROR ||
-                (log.errors == 1 && strncmp(log.message, path, strlen(path)) == 0));
+        MUST(result != VPL_PARSE_ERROR || (log.errors == 1 && strncmp(log.message, path, strlen(path)) == 0));
     }
     vplScene_Destroy(scene);
     closeFuzzContext(context);

@@ -49,8 +49,7 @@ static void requireMesh(const vplScene* scene)
         MUST(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
     }
     for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
-        MUST(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field ==
-                NULL);
+        MUST(vplCheckMaterial(vplScene_GetMaterial(scene, i), vplScene_GetTextureCount(scene)).field == NULL);
     }
 }
 

@@ -30,15 +30,14 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
         for (int i = 0; i < count; i++) { // what was set can be written and set again
             char text[64];
             MUST(rows[i].kind == VPL_OPTION_PART ||
-                    (vplRenderOptions_Get(&options, rows[i].name, text, sizeof text) == VPL_SUCCESS &&
-                     vplRenderOptions_Set(&options, rows[i].name, text) == VPL_SUCCESS));
+                 (vplRenderOptions_Get(&options, rows[i].name, text, sizeof text) == VPL_SUCCESS &&
+                  vplRenderOptions_Set(&options, rows[i].name, text) == VPL_SUCCESS));
         }
     } else {
         int line, column, used = 0;
-        MUST(result == VPL_PARSE_ERROR && log.errors == 1 &&
-                memcmp(&options, &before, sizeof options) == 0);
+        MUST(result == VPL_PARSE_ERROR && log.errors == 1 && memcmp(&options, &before, sizeof options) == 0);
         MUST(sscanf(log.message + strcspn(log.message, ":"), ":%d:%d: %n", &line, &column, &used) == 2 &&
-                used > 0);
+             used > 0);
         MUST(line >= 1 && column >= 1);
     }
     close(fd);

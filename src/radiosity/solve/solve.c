@@ -220,7 +220,6 @@ vplResult vplGatherRadiosity(const vplTransport* transport, const vplRgb* radios
 vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
                                vplRgb* residualOut)
 {
-    REQUIRE(contextOf(transport), transport, source, radiosity,
-            residualOut);
+    REQUIRE(contextOf(transport), transport, source, radiosity, residualOut);
     return checkAndGather(transport, source, radiosity, residualOut);
 }

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Decisions of radiosity: where patches end, groups of triangles, links, and whether pixels gather their light.
+#include "render/plan.h"
+
+#include "geometry/triangle.h"
+#include "render/show.h"
+#include "render/stages/results.h"
+
+#include <limits.h>
+#include <stdio.h>
+
+// Decides whether patches end where surfaces meet, before patches are made.
+static void chooseCuts(vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    const bool documented = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
+    if (o->cuts == VPL_PATCH_CUTS_AUTO) {
+        o->cuts = documented ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_ON;
+        vplDecide(p, "patch-cuts",
+                  documented ? "as the document has it" : "no patch lies on both sides of a surface");
+    }
+}
+
+// Decides whether small triangles share patches, before patches are made.
+static void chooseGroups(const vplRunner* r, vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    const bool fixed = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
+    if (o->groups == VPL_PATCH_GROUPS_AUTO) {
+        const bool many = g->triangleCount > o->patches;
+        o->groups = many && !fixed ? VPL_PATCH_GROUPS_ON : VPL_PATCH_GROUPS_OFF;
+        vplDecide(p, "patch-groups",
+                  !many   ? "no more triangles than patches"
+                  : fixed ? "other options ask for a patch per triangle"
+                          : "%d triangles for %d patches",
+                  g->triangleCount, o->patches);
+    }
+}
+
+// Decides whether patches exchange light in groups.
+static vplResult chooseLinks(vplRunner* r, vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    p->linkAbove = o->hierarchy == VPL_HIERARCHY_ON    ? -1
+                   : o->hierarchy == VPL_HIERARCHY_OFF ? INT_MAX
+                                                       : VPL_ALL_PAIRS;
+    p->patches = o->patches;
+    p->patchSides = o->patches; // in rooms, which light fills from one side
+    if (o->placement == VPL_PATCHES_UNIFORM && p->showsPatches) {
+        TRY(vplRunner_RunStage(r, VPL_STAGE_PATCHES));
+        TRY(vplRunner_RunStage(r, VPL_STAGE_SIDES));
+        const vplPatches* patches = r->run.results[VPL_STAGE_PATCHES];
+        const vplPatchSides* sides = r->run.results[VPL_STAGE_SIDES];
+        p->patches = patches->patchCount;
+        p->longestEdge = (double)patches->longestEdge;
+        p->patchGroups = patches->groupCount;
+        p->groupedTriangles = vplPatches_CountGrouped(patches);
+        p->patchSides = sides->count;
+    }
+    p->linked = p->patchSides > p->linkAbove;
+    p->formFactorBytes = (int64_t)p->patchSides * p->patchSides * (int64_t)sizeof(float);
+    if (o->hierarchy == VPL_HIERARCHY_AUTO) {
+        o->hierarchy = p->linked ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
+        vplDecide(p, "hierarchy",
+                  "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
+                  VPL_ALL_PAIRS);
+    }
+    if (o->groups == VPL_PATCH_GROUPS_ON && o->formFactors == VPL_FORM_FACTORS_INCENTRE) {
+        snprintf(
+            p->problem, sizeof p->problem,
+            "groups of triangles have no incentre; use --patch-groups off or --form-factors monte-carlo");
+    }
+    if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
+        p->refusal = VPL_LIMIT;
+        snprintf(p->problem, sizeof p->problem,
+                 "form factors of %d sides take %lld bytes, at most %lld are allowed; use --hierarchy on",
+                 p->patchSides, (long long)p->formFactorBytes, (long long)VPL_MAX_FORM_FACTOR_BYTES);
+    }
+    return VPL_SUCCESS;
+}
+
+// Rays from each pixel where a seventh of the patches are groups of triangles. At 160x90 and 5,000 patches they bring relmse
+// from 0.89 to 0.19 in Sponza (55 % groups), from 0.0218 to 0.0189 in a furnished flat (21 %), in 0.7 and 1.0 times the time.
+// They leave 0.0019 by themselves: twice what patches leave around a bunny (2 % groups).
+enum { GROUP_RAYS = 16, GROUP_SHARE = 7 };
+
+// Decides whether pixels gather their light, when the patches are known.
+static void chooseGather(vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    if (o->gather >= 0) {
+        return;
+    }
+    const bool grouped = p->showsPatches && vplShowsLight(p->options.output.show) && p->patchGroups > 0 &&
+                         GROUP_SHARE * (int64_t)p->patchGroups >= p->patches;
+    o->gather = grouped ? GROUP_RAYS : 0;
+    p->gathers = grouped;
+    if (grouped) {
+        vplDecide(p, "gather", "%d of %d patches are groups, whose light differs more than a mean tells",
+                  p->patchGroups, p->patches);
+    }
+    vplDecidePipeline(p);
+}
+
+static void chooseRadiosity(vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    const bool incentre = o->formFactors == VPL_FORM_FACTORS_INCENTRE;
+    if (o->rowSums == VPL_ROW_SUMS_USUAL && o->hierarchy == VPL_HIERARCHY_OFF &&
+        o->groups == VPL_PATCH_GROUPS_OFF) {
+        o->rowSums = incentre ? VPL_ROW_SUMS_KEEP : VPL_ROW_SUMS_CLAMP;
+        vplDecide(p, "row-sums",
+                  incentre ? "as the document has it" : "no patch sends more light than it has");
+    }
+    if (o->lightSamples == 0) {
+        o->lightSamples = incentre ? 1 : VPL_PATCH_CELLS;
+        vplDecide(p, "patch-light", incentre ? "as the document has it" : "the mean over the patch");
+    }
+}
+
+vplResult vplDecidePatches(vplRunner* r, vplPlan* p)
+{
+    chooseCuts(p);
+    chooseGroups(r, p);
+    TRY(chooseLinks(r, p));
+    chooseGather(p);
+    chooseRadiosity(p);
+    return VPL_SUCCESS;
+}
