@@ -123,7 +123,7 @@ vplContext* openContext(const Arguments* arguments);
 // Plans a render as renderPicture does it: it can be interrupted.
 vplResult planRender(const Arguments* arguments, const vplScene* scene, vplPlan** planOut);
 
-// Loads the scene that the arguments name; a mesh by itself is fitted to the picture.
+// Loads the scene that the arguments name, as it stands at --frame; a mesh by itself is fitted to the picture.
 vplResult loadScene(const Arguments* arguments, vplContext* context, vplScene** sceneOut);
 
 // Reads "ELEVATION", "ELEVATION,TURBIDITY" or "ELEVATION,TURBIDITY,TURN", degrees; false if it is anything else.

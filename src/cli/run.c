@@ -77,6 +77,9 @@ vplResult loadScene(const Arguments* a, vplContext* context, vplScene** sceneOut
     if (result == VPL_SUCCESS) {
         result = addEnvironment(a, *sceneOut);
     }
+    if (result == VPL_SUCCESS) {
+        result = vplScene_SetFrame(*sceneOut, a->render.sequence.frame);
+    }
     vplContext_SetProgress(context, NULL, NULL); // an interrupted render still writes its picture
     return result;
 }
@@ -149,9 +152,6 @@ int runOnScene(const Arguments* a, SceneWork* work)
     }
     vplScene* scene = NULL;
     int code = exitCode(loadScene(a, context, &scene), true);
-    if (code == EXIT_DONE) {
-        code = exitCode(vplScene_SetFrame(scene, a->render.sequence.frame), true);
-    }
     if (code == EXIT_DONE && a->planIn != NULL && !a->quiet && a->planScene != vplScene_GetHash(scene)) {
         complain("warning: %s was made for another scene, or %s was changed since: the picture will differ",
                  a->planIn, a->positionals[0]);

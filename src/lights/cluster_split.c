@@ -364,7 +364,8 @@ vplResult vplSplitClusters(const vplGeometry* geometry, const vplLightSet* light
                            const vplLightClusters* clusters, const vplClusterSplitDef* def,
                            vplLightClusters** clustersOut, vplClusterAgreement* agreementOut)
 {
-    REQUIRE(CONTEXT_OF(geometry) ?: CONTEXT_OF(lights) ?: CONTEXT_OF(clusters), geometry, lights, clusters, def, clustersOut, agreementOut);
+    REQUIRE(CONTEXT_OF(geometry) ?: CONTEXT_OF(lights) ?: CONTEXT_OF(clusters), geometry, lights, clusters,
+            def, clustersOut, agreementOut);
     TRY(check(lights, clusters, def));
     Splitting s = {.geometry = geometry, .set = lights, .def = def};
     vplClusterAgreement agreement = {0, 0, 0};

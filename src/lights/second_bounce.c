@@ -147,7 +147,8 @@ vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClu
                                   const vplParaboloidMaps* maps, const vplSecondBounceDef* def,
                                   vplLightSet** setOut)
 {
-    REQUIRE(CONTEXT_OF(geometry) ?: CONTEXT_OF(clusters) ?: CONTEXT_OF(maps), geometry, clusters, maps, def, setOut);
+    REQUIRE(CONTEXT_OF(geometry) ?: CONTEXT_OF(clusters) ?: CONTEXT_OF(maps), geometry, clusters, maps, def,
+            setOut);
     Sampling s = {.geometry = geometry, .clusters = clusters, .maps = maps, .def = def};
     TRY(check(clusters, maps, def));
     TRY(vplLightSet_Make(maps->context, def->count, def->step + 1, &s.arrays, &s.set));

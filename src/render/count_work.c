@@ -223,15 +223,6 @@ static void addFurtherBounces(const Scale* s, vplWork* w)
     }
 }
 
-static double facesOfMaps(const vplPlan* p)
-{
-    double faces = 0;
-    for (int i = 0; i < p->emitterCount; i++) {
-        faces += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL ? 6 : 0;
-    }
-    return faces;
-}
-
 static vplWork workOf(const Scale* s, vplStageId id)
 {
     const vplPlan* p = s->plan;
@@ -243,7 +234,7 @@ static vplWork workOf(const Scale* s, vplStageId id)
         w.counts[BUILD] = s->triangles * (p->castsRays ? 1 : 0.15);
         break;
     case VPL_STAGE_EMITTER_MAPS:
-        addMaps(facesOfMaps(p), o->shadow.mapSize, s, &w);
+        addMaps(vplEmitterMapFaces(p), o->shadow.mapSize, s, &w);
         break;
     case VPL_STAGE_REFLECTIVE_MAPS:
         addMaps(vplReflectiveMapFaces(p), o->shadow.rsmSize, s, &w);

@@ -24,19 +24,19 @@ typedef struct Scale {
 // Bytes per triangle that the rasterizer holds while it draws a view, and the six faces of a cube map.
 static const double RASTER_VIEW = 34, RASTER_CUBE = 150;
 
-static int countMapped(const vplPlan* p)
+int vplEmitterMapFaces(const vplPlan* p)
 {
-    int count = 0;
+    int faces = 0;
     for (int i = 0; i < p->emitterCount; i++) {
-        count += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL;
+        faces += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL ? 6 : 0;
     }
-    return count;
+    return faces;
 }
 
 double vplEmitterMapBytes(const vplPlan* p)
 {
     const double texels = (double)p->options.shadow.mapSize * p->options.shadow.mapSize;
-    return countMapped(p) * 6 * texels * sizeof(float);
+    return vplEmitterMapFaces(p) * texels * sizeof(float);
 }
 
 double vplReflectiveMapFaces(const vplPlan* p)
@@ -321,9 +321,9 @@ static void countDraws(const Scale* s, vplPlan* p)
         o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
     const bool drawn = o->method == VPL_METHOD_RADIOSITY && !p->gathers;
     const int64_t patchDraws = drawn ? 2 : 0; // of fronts and of backs
-    const int64_t maps = p->emitterRays ? 0 : countMapped(p);
+    const int64_t faces = p->emitterRays ? 0 : vplEmitterMapFaces(p);
     p->drawCalls =
-        objects * (6 * maps + (1 + passes) * supersample) + patchDraws * supersample * vplCountPoints(p);
+        objects * (faces + (1 + passes) * supersample) + patchDraws * supersample * vplCountPoints(p);
 }
 
 enum {

@@ -39,7 +39,8 @@ enum { VPL_MOST_EMITTERS = 1024, VPL_EMITTERS_PER_POINT = 64 };
 // more would be too few. SSVP with 1,000 lamps: relmse 0.014 instead of 0.074, energy 0.98 instead of 0.77.
 enum { VPL_MAPPED_EMITTERS = 256 };
 
-// Bytes of the shadow maps of all emitters, and faces of their reflective maps.
+// Faces and bytes of the shadow maps of all emitters, and faces of their reflective maps.
+int vplEmitterMapFaces(const vplPlan* plan);
 double vplEmitterMapBytes(const vplPlan* plan);
 double vplReflectiveMapFaces(const vplPlan* plan);
 

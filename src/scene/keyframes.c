@@ -60,7 +60,7 @@ static vplRgb lerpRgb(double t, vplRgb a, vplRgb b)
     return (vplRgb){lerp(t, a.r, b.r), lerp(t, a.g, b.g), lerp(t, a.b, b.b)};
 }
 
-// Both types of key begin with their frame.
+// All types of key begin with their frame.
 static double frameOf(const void* keys, size_t size, int k)
 {
     double frame;
@@ -68,13 +68,7 @@ static double frameOf(const void* keys, size_t size, int k)
     return frame;
 }
 
-// The keys around a frame. Before the first key and after the last, both are the same and t is 0.
-typedef struct Interval {
-    int key, next;
-    double t; // [0, 1)
-} Interval;
-
-static Interval findInterval(const vplTrack* track, size_t size, double frame)
+vplKeyInterval vplTrack_Find(const vplTrack* track, size_t size, double frame)
 {
     int low = 0, high = track->count; // the key is in [low, high)
     while (high - low > 1) {
@@ -85,28 +79,20 @@ static Interval findInterval(const vplTrack* track, size_t size, double frame)
     }
     const double from = frameOf(track->keys, size, low);
     if (low + 1 == track->count || !(frame > from)) {
-        return (Interval){low, low, 0};
+        return (vplKeyInterval){low, low, 0};
     }
-    return (Interval){low, low + 1, (frame - from) / (frameOf(track->keys, size, low + 1) - from)};
-}
-
-static vplResult checkIndex(const vplScene* scene, const char* type, int index, int count)
-{
-    return index >= 0 && index < count
-               ? VPL_SUCCESS
-               : vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                         "%s: index is %d, must be one of the scene's %d", type, index, count);
+    return (vplKeyInterval){low, low + 1, (frame - from) / (frameOf(track->keys, size, low + 1) - from)};
 }
 
 vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vplCameraDef* defOut)
 {
     REQUIRE(CONTEXT_OF(scene), scene, defOut);
-    TRY(checkIndex(scene, "camera", index, vplScene_GetCameraCount(scene)));
+    TRY(vplScene_CheckIndex(scene, "camera", index, scene->cameraCount));
     const vplTrack* track = &scene->cameras[index].track;
     vplCameraDef def = scene->cameras[index].def;
     if (track->count > 0) {
         const vplCameraKey* keys = track->keys;
-        const Interval i = findInterval(track, sizeof *keys, frame);
+        const vplKeyInterval i = vplTrack_Find(track, sizeof *keys, frame);
         const vplCameraKey *a = &keys[i.key], *b = &keys[i.next];
         def.eye = lerpVec(i.t, a->eye, b->eye);
         def.target = lerpVec(i.t, a->target, b->target);
@@ -123,12 +109,12 @@ vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vp
 vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut)
 {
     REQUIRE(CONTEXT_OF(scene), scene, defOut);
-    TRY(checkIndex(scene, "emitter", index, vplScene_GetEmitterCount(scene)));
+    TRY(vplScene_CheckIndex(scene, "light", index, scene->emitterCount));
     const vplTrack* track = &scene->emitters[index].track;
     vplEmitterDef def = scene->emitters[index].def;
     if (track->count > 0) {
         const vplEmitterKey* keys = track->keys;
-        const Interval i = findInterval(track, sizeof *keys, frame);
+        const vplKeyInterval i = vplTrack_Find(track, sizeof *keys, frame);
         const vplEmitterKey *a = &keys[i.key], *b = &keys[i.next];
         def.position = lerpVec(i.t, a->position, b->position);
         def.direction = lerpVec(i.t, a->direction, b->direction);
@@ -143,26 +129,24 @@ vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, v
 
 // ---- storage
 
-const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut)
+const void* vplTrack_GetKeys(const vplTrack* track, int* countOut)
 {
-    const vplTrack* track = scene != NULL && index >= 0 && index < vplScene_GetCameraCount(scene)
-                                ? &scene->cameras[index].track
-                                : NULL;
     if (countOut != NULL) {
         *countOut = track != NULL ? track->count : 0;
     }
     return track != NULL ? track->keys : NULL;
 }
 
+const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut)
+{
+    const bool there = index >= 0 && index < vplScene_GetCameraCount(scene);
+    return vplTrack_GetKeys(there ? &scene->cameras[index].track : NULL, countOut);
+}
+
 const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut)
 {
-    const vplTrack* track = scene != NULL && index >= 0 && index < vplScene_GetEmitterCount(scene)
-                                ? &scene->emitters[index].track
-                                : NULL;
-    if (countOut != NULL) {
-        *countOut = track != NULL ? track->count : 0;
-    }
-    return track != NULL ? track->keys : NULL;
+    const bool there = index >= 0 && index < vplScene_GetEmitterCount(scene);
+    return vplTrack_GetKeys(there ? &scene->emitters[index].track : NULL, countOut);
 }
 
 static vplFault checkCameraKey(const void* def, const void* key)
@@ -177,16 +161,15 @@ static vplFault checkEmitterKey(const void* def, const void* key)
     return vplCheckEmitter(&posed);
 }
 
-// The keys of a path that the user sets, either of cameras or of emitters.
-typedef struct Keys {
-    const char* type;
-    const void* keys;
-    size_t size; // of a key
-    int count;
-    vplFault (*check)(const void* def, const void* key);
-} Keys;
+static vplResult checkIndex(const vplScene* scene, const char* type, int index, int count)
+{
+    return index >= 0 && index < count
+               ? VPL_SUCCESS
+               : vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                         "%s: index is %d, must be one of the scene's %d", type, index, count);
+}
 
-static vplResult checkKeys(const vplScene* scene, const Keys* k, const void* def)
+static vplResult checkKeys(const vplScene* scene, const vplKeys* k, const void* def)
 {
     if (k->count < 0 || k->count > VPL_MAX_KEYS) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s: count is %d, must be in [0, %d]", k->type,
@@ -204,8 +187,7 @@ static vplResult checkKeys(const vplScene* scene, const Keys* k, const void* def
     return VPL_SUCCESS;
 }
 
-// Replaces the keys of a track by a copy of others.
-static vplResult setKeys(vplScene* scene, const Keys* k, const void* def, vplTrack* track)
+vplResult vplScene_SetKeys(vplScene* scene, const vplKeys* k, const void* def, vplTrack* track)
 {
     TRY(checkKeys(scene, k, def));
     void* copy = NULL;
@@ -222,16 +204,16 @@ vplResult vplScene_SetCameraPath(vplScene* scene, int index, const vplCameraKey*
 {
     REQUIRE(CONTEXT_OF(scene), scene);
     REQUIRE_ARRAY(CONTEXT_OF(scene), keys, count);
-    const Keys k = {"vplCameraKey", keys, sizeof *keys, count, checkCameraKey};
+    const vplKeys k = {"vplCameraKey", keys, sizeof *keys, count, checkCameraKey};
     TRY(checkIndex(scene, k.type, index, scene->cameraCount));
-    return setKeys(scene, &k, &scene->cameras[index].def, &scene->cameras[index].track);
+    return vplScene_SetKeys(scene, &k, &scene->cameras[index].def, &scene->cameras[index].track);
 }
 
 vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKey* keys, int count)
 {
     REQUIRE(CONTEXT_OF(scene), scene);
     REQUIRE_ARRAY(CONTEXT_OF(scene), keys, count);
-    const Keys k = {"vplEmitterKey", keys, sizeof *keys, count, checkEmitterKey};
+    const vplKeys k = {"vplEmitterKey", keys, sizeof *keys, count, checkEmitterKey};
     TRY(checkIndex(scene, k.type, index, scene->emitterCount));
-    return setKeys(scene, &k, &scene->emitters[index].def, &scene->emitters[index].track);
+    return vplScene_SetKeys(scene, &k, &scene->emitters[index].def, &scene->emitters[index].track);
 }

@@ -113,6 +113,30 @@ vplResult vplScene_ReadModel(vplScene* scene, const char* path, bool whole, vplM
     return VPL_SUCCESS;
 }
 
+vplResult vplScene_AddPart(vplScene* scene, const vplAffine* outer, const vplModelPart* part,
+                           const vplObjectDef* def)
+{
+    vplObjectDef object = *def;
+    const vplAffine whole = vplAffine_Multiply(outer, &part->toModel);
+    int index;
+    object.type = VPL_OBJECT_MESH;
+    object.mesh = part->mesh;
+    object.transform = vplAffine_ToMat4(&whole);
+    TRY(vplScene_AddObject(scene, &object, &index));
+    if (part->placeCount == 0) {
+        return VPL_SUCCESS;
+    }
+    vplTransformKey* keys = vplAlloc(scene->context, (size_t)part->placeCount, sizeof *keys);
+    for (int i = 0; i < part->placeCount && keys != NULL; i++) {
+        const vplAffine place = vplAffine_Multiply(outer, &part->places[i]);
+        keys[i] = (vplTransformKey){(double)(part->firstFrame + i), vplAffine_ToMat4(&place)};
+    }
+    const vplResult result =
+        keys != NULL ? vplScene_SetObjectPath(scene, index, keys, part->placeCount) : VPL_OUT_OF_MEMORY;
+    vplFree(scene->context, keys);
+    return result;
+}
+
 static vplResult addObjects(vplScene* scene, const char* path, const vplObjectDef* def, vplModel* model)
 {
     const vplAffine outer = vplAffine_FromMat4(&def->transform);

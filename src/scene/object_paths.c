@@ -1,31 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Objects that move: transforms at keyframes, and in between their matrices interpolated linearly. Rendering does not change
 // a scene, and geometry is made of what stands in it, so moving to a frame is an edit of the scene, not part of a render.
-#include "scene/model.h"
 #include "scene/scene.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 static vplMat4 poseAt(const vplMover* m, double frame)
 {
-    int low = 0, high = m->count; // the key is in [low, high)
-    while (high - low > 1) {
-        const int middle = low + (high - low) / 2;
-        const bool before = m->keys[middle].frame <= frame;
-        low = before ? middle : low;
-        high = before ? high : middle;
-    }
-    const vplTransformKey *a = &m->keys[low], *b = a + (low + 1 < m->count ? 1 : 0);
-    vplMat4 pose = a->transform;
-    if (a == b || !(frame > a->frame)) {
-        return pose;
-    }
-    const double t = (frame - a->frame) / (b->frame - a->frame);
+    const vplTransformKey* keys = m->track.keys;
+    const vplKeyInterval at = vplTrack_Find(&m->track, sizeof *keys, frame);
+    vplMat4 pose = keys[at.key].transform;
     for (int i = 0; i < 16; i++) {
-        const double from = (double)a->transform.m[i], way = (double)b->transform.m[i] - from;
-        pose.m[i] = way != 0 ? (float)(from + t * way) : pose.m[i]; // -0 stays what it is
+        const double from = (double)pose.m[i], way = (double)keys[at.next].transform.m[i] - from;
+        pose.m[i] = way != 0 ? (float)(from + at.t * way) : pose.m[i]; // -0 stays what it is
     }
     return pose;
 }
@@ -52,59 +40,40 @@ void vplScene_DropMover(vplScene* scene, int object)
 {
     vplMover* m = findMover(scene, object);
     if (m != NULL) {
-        vplArena_Free(scene->arena, m->keys);
+        vplArena_Free(scene->arena, m->track.keys);
         *m = scene->movers[--scene->moverCount];
     }
 }
 
-static vplResult checkKeys(const vplScene* scene, const vplTransformKey* keys, int count)
+static vplFault checkTransformKey(const void* def, const void* key)
 {
-    double before = -INFINITY;
-    if (count < 0 || count > VPL_MAX_KEYS) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplTransformKey: count is %d, must be in [0, %d]", count, VPL_MAX_KEYS);
-    }
-    for (int i = 0; i < count; i++) {
-        char subject[64];
-        snprintf(subject, sizeof subject, "vplTransformKey %d: ", i);
-        TRY(vplScene_ReportFault(scene, subject, vplCheckKeyFrame(before, keys[i].frame)));
-        TRY(vplScene_ReportFault(scene, subject, vplCheckTransform(&keys[i].transform)));
-        before = keys[i].frame;
-    }
-    return VPL_SUCCESS;
+    (void)def;
+    return vplCheckTransform(&((const vplTransformKey*)key)->transform);
 }
 
 vplResult vplScene_SetObjectPath(vplScene* scene, int object, const vplTransformKey* keys, int count)
 {
     REQUIRE(CONTEXT_OF(scene), scene);
     REQUIRE_ARRAY(scene->context, keys, count);
-    if (object < 0 || object >= scene->objectCount) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "object %d does not exist, the scene has %d",
-                       object, scene->objectCount);
-    }
-    TRY(checkKeys(scene, keys, count));
-    if (count == 0) {
-        vplScene_DropMover(scene, object);
-        return VPL_SUCCESS;
-    }
+    TRY(vplScene_CheckIndex(scene, "object", object, scene->objectCount));
+    const vplKeys set = {"vplTransformKey", keys, sizeof *keys, count, checkTransformKey};
+    vplTrack track = {NULL, 0};
     TRY(vplArena_Reserve(scene->arena, &scene->movers, &scene->moverCapacity, (size_t)scene->moverCount + 1,
                          sizeof *scene->movers));
-    vplTransformKey* copy = vplArena_Copy(scene->arena, keys, (size_t)count, sizeof *keys);
-    TRY(copy != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY);
+    TRY(vplScene_SetKeys(scene, &set, NULL, &track));
     vplScene_DropMover(scene, object);
-    scene->movers[scene->moverCount] = (vplMover){object, count, copy};
-    const vplMat4 pose = poseAt(&scene->movers[scene->moverCount++], 0);
-    stand(scene, object, &pose);
+    if (count > 0) {
+        scene->movers[scene->moverCount] = (vplMover){object, track};
+        const vplMat4 pose = poseAt(&scene->movers[scene->moverCount++], 0);
+        stand(scene, object, &pose);
+    }
     return VPL_SUCCESS;
 }
 
 const vplTransformKey* vplScene_GetObjectPath(const vplScene* scene, int object, int* countOut)
 {
     const vplMover* m = scene != NULL ? findMover(scene, object) : NULL;
-    if (countOut != NULL) {
-        *countOut = m != NULL ? m->count : 0;
-    }
-    return m != NULL ? m->keys : NULL;
+    return vplTrack_GetKeys(m != NULL ? &m->track : NULL, countOut);
 }
 
 vplResult vplScene_SetFrame(vplScene* scene, double frame)
@@ -121,30 +90,4 @@ vplResult vplScene_SetFrame(vplScene* scene, double frame)
         stand(scene, scene->movers[i].object, &pose);
     }
     return VPL_SUCCESS;
-}
-
-// ---- parts of models
-
-vplResult vplScene_AddPart(vplScene* scene, const vplAffine* outer, const vplModelPart* part,
-                           const vplObjectDef* def)
-{
-    vplObjectDef object = *def;
-    const vplAffine whole = vplAffine_Multiply(outer, &part->toModel);
-    int index;
-    object.type = VPL_OBJECT_MESH;
-    object.mesh = part->mesh;
-    object.transform = vplAffine_ToMat4(&whole);
-    TRY(vplScene_AddObject(scene, &object, &index));
-    if (part->placeCount == 0) {
-        return VPL_SUCCESS;
-    }
-    vplTransformKey* keys = vplAlloc(scene->context, (size_t)part->placeCount, sizeof *keys);
-    for (int i = 0; i < part->placeCount && keys != NULL; i++) {
-        const vplAffine place = vplAffine_Multiply(outer, &part->places[i]);
-        keys[i] = (vplTransformKey){(double)(part->firstFrame + i), vplAffine_ToMat4(&place)};
-    }
-    const vplResult result =
-        keys != NULL ? vplScene_SetObjectPath(scene, index, keys, part->placeCount) : VPL_OUT_OF_MEMORY;
-    vplFree(scene->context, keys);
-    return result;
 }

@@ -329,7 +329,7 @@ vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* in
 
 // ---- changes
 
-static vplResult checkIndex(const vplScene* scene, const char* what, int index, int count)
+vplResult vplScene_CheckIndex(const vplScene* scene, const char* what, int index, int count)
 {
     return index >= 0 && index < count
                ? VPL_SUCCESS
@@ -340,7 +340,7 @@ static vplResult checkIndex(const vplScene* scene, const char* what, int index, 
 vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def)
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
-    TRY(checkIndex(scene, "camera", index, scene->cameraCount));
+    TRY(vplScene_CheckIndex(scene, "camera", index, scene->cameraCount));
     TRY(vplScene_CheckCamera(scene, "vplCameraDef.", def));
     TRY(vplScene_SetCameraPath(scene, index, NULL, 0));
     scene->cameras[index].def = *def;
@@ -351,7 +351,7 @@ vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def
 vplResult vplScene_SetEmitter(vplScene* scene, int index, const vplEmitterDef* def)
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
-    TRY(checkIndex(scene, "emitter", index, scene->emitterCount));
+    TRY(vplScene_CheckIndex(scene, "emitter", index, scene->emitterCount));
     TRY(requireCookie(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE));
     TRY(vplScene_ReportFault(scene, "vplEmitterDef.", vplCheckEmitter(def)));
     TRY(vplScene_SetEmitterPath(scene, index, NULL, 0));
@@ -363,7 +363,7 @@ vplResult vplScene_SetEmitter(vplScene* scene, int index, const vplEmitterDef* d
 vplResult vplScene_SetMaterial(vplScene* scene, int index, const vplMaterialDef* def)
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
-    TRY(checkIndex(scene, "material", index, scene->materialCount));
+    TRY(vplScene_CheckIndex(scene, "material", index, scene->materialCount));
     TRY(checkMaterial(scene, def, index));
     vplMaterialDef copy = *def;
     const char* before = scene->materials[index].name;
@@ -380,7 +380,7 @@ vplResult vplScene_SetMaterial(vplScene* scene, int index, const vplMaterialDef*
 vplResult vplScene_SetTransform(vplScene* scene, int object, const vplMat4* transform)
 {
     REQUIRE(CONTEXT_OF(scene), scene, transform);
-    TRY(checkIndex(scene, "object", object, scene->objectCount));
+    TRY(vplScene_CheckIndex(scene, "object", object, scene->objectCount));
     TRY(vplScene_ReportFault(scene, "vplScene_SetTransform: ", vplCheckTransform(transform)));
     vplScene_DropMover(scene, object);
     scene->objects[object].transform = *transform;
@@ -391,7 +391,7 @@ vplResult vplScene_SetTransform(vplScene* scene, int object, const vplMat4* tran
 vplResult vplScene_SetObjectMaterial(vplScene* scene, int object, int material)
 {
     REQUIRE(CONTEXT_OF(scene), scene);
-    TRY(checkIndex(scene, "object", object, scene->objectCount));
+    TRY(vplScene_CheckIndex(scene, "object", object, scene->objectCount));
     TRY(vplScene_CheckObjectMaterial(scene, scene->objects[object].type, scene->objects[object].mesh,
                                      material));
     scene->objects[object].material = material;

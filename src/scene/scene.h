@@ -7,9 +7,9 @@
 
 #include "base/arena.h"
 
-// The keyframes of a camera or emitter. One that stands still has none.
+// The keyframes of a camera, emitter or object. One that stands still has none.
 typedef struct vplTrack {
-    void* keys; // vplCameraKey or vplEmitterKey
+    void* keys; // vplCameraKey, vplEmitterKey or vplTransformKey
     int count;
 } vplTrack;
 
@@ -25,8 +25,8 @@ typedef struct vplEmitter {
 
 // The keyframes of an object that moves.
 typedef struct vplMover {
-    int object, count;
-    vplTransformKey* keys;
+    int object;
+    vplTrack track;
 } vplMover;
 
 typedef struct vplSceneTexture {
@@ -110,6 +110,35 @@ vplResult vplScene_CheckCamera(const vplScene* scene, const char* subject, const
 
 // Logs a fault, if there is one, as "<subject><field> <text>"; fails if there is one.
 vplResult vplScene_ReportFault(const vplScene* scene, const char* subject, vplFault fault);
+
+// Fails unless 0 <= index < count; `what` names what the scene has so many of.
+vplResult vplScene_CheckIndex(const vplScene* scene, const char* what, int index, int count);
+
+// ---- keyframes (keyframes.c)
+
+// The keys around a frame. Before the first key and after the last, both are the same and t is 0.
+typedef struct vplKeyInterval {
+    int key, next;
+    double t; // [0, 1)
+} vplKeyInterval;
+
+// Finds the interval of a track that has keys; `size` is that of a key.
+vplKeyInterval vplTrack_Find(const vplTrack* track, size_t size, double frame);
+
+// The keys, and their number, which may be NULL; NULL and 0 where the track is NULL.
+const void* vplTrack_GetKeys(const vplTrack* track, int* countOut);
+
+// The keys of a path that the user sets.
+typedef struct vplKeys {
+    const char* type;
+    const void* keys;
+    size_t size; // of a key
+    int count;
+    vplFault (*check)(const void* def, const void* key);
+} vplKeys;
+
+// Replaces the keys of a track by a copy of others, which are checked for the def.
+vplResult vplScene_SetKeys(vplScene* scene, const vplKeys* keys, const void* def, vplTrack* track);
 
 // Checks that a key may follow one at frame `before`.
 vplFault vplCheckKeyFrame(double before, double frame);
