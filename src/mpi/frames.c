@@ -109,8 +109,10 @@ static void writeTitle(Frames* f)
 }
 
 // Marks the frames that a journal names and whose files are there. *keptOut is the size of its whole lines.
-static int readLines(Frames* f, const char* path, const char* text, size_t size, size_t* keptOut)
+static int readLines(void* user, const char* path, const uint8_t* bytes, size_t size, size_t* keptOut)
 {
+    Frames* f = user;
+    const char* text = (const char*)bytes;
     const Arguments* a = f->ranks->arguments;
     const size_t title = strlen(f->title);
     if (size < title || memcmp(text, f->title, title) != 0) {
@@ -136,32 +138,6 @@ static int readLines(Frames* f, const char* path, const char* text, size_t size,
     }
     *keptOut = at;
     return EXIT_DONE;
-}
-
-static int openFiles(Frames* f)
-{
-    const Arguments* a = f->ranks->arguments;
-    uint8_t* bytes = NULL;
-    size_t size = 0, kept = 0;
-    int code = EXIT_DONE;
-    if (a->resume != NULL) {
-        code = readWhole(a->resume, &bytes, &size) ? readLines(f, a->resume, (char*)bytes, size, &kept)
-                                                   : EXIT_USAGE;
-    }
-    const bool same = a->resume != NULL && a->checkpoint != NULL && strcmp(a->resume, a->checkpoint) == 0;
-    if (code == EXIT_DONE && a->checkpoint != NULL && !same && access(a->checkpoint, F_OK) == 0) {
-        complain("%s: is there already; go on with --resume %s, or delete it", a->checkpoint, a->checkpoint);
-        code = EXIT_USAGE;
-    }
-    if (code == EXIT_DONE && a->checkpoint != NULL) {
-        const bool fresh = kept == 0;
-        const uint8_t* first = fresh ? (const uint8_t*)f->title : bytes;
-        code = openJournal(&f->journal, a->checkpoint, first, fresh ? strlen(f->title) : kept)
-                   ? EXIT_DONE
-                   : EXIT_COULD_NOT;
-    }
-    free(bytes);
-    return code;
 }
 
 // ---- the sequence
@@ -222,7 +198,7 @@ int renderFrames(Ranks* r, vplScene* scene)
                               : exitCode(vplHistory_Create(f.context, &f.options.sequence.history), false);
     if (code == EXIT_DONE && r->rank == 0) {
         code = checkNames(&f);
-        code = code == EXIT_DONE ? openFiles(&f) : code;
+        code = code == EXIT_DONE ? openJournal(&f.journal, a, f.title, readLines, &f) : code;
     }
     code = largestNumber(r, code);
     code = code == EXIT_DONE ? renderFirst(&f, &work) : code;

@@ -8,7 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
-bool readWhole(const char* path, uint8_t** bytesOut, size_t* sizeOut)
+// Reads a file to memory; false after complaining. *bytesOut is freed with free.
+static bool readWhole(const char* path, uint8_t** bytesOut, size_t* sizeOut)
 {
     FILE* file = fopen(path, "rb");
     uint8_t* bytes = NULL;
@@ -37,10 +38,10 @@ bool readWhole(const char* path, uint8_t** bytesOut, size_t* sizeOut)
     return good;
 }
 
-bool openJournal(Journal* j, const char* path, const uint8_t* bytes, size_t size)
+// Makes the file begin with `bytes`. What it has beyond them is cut off last, so that nothing is lost if the job ends here.
+static bool beginFile(Journal* j, const char* path, const void* bytes, size_t size)
 {
     *j = (Journal){.file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666), .path = path};
-    // What the file has beyond the bytes to keep is cut off last, so that nothing is lost if the job ends here.
     if (j->file < 0 || !appendJournal(j, bytes, size) || ftruncate(j->file, (off_t)size) != 0) {
         complain("%s: cannot write: %s", path, strerror(errno));
         return false;
@@ -48,10 +49,34 @@ bool openJournal(Journal* j, const char* path, const uint8_t* bytes, size_t size
     return true;
 }
 
+int openJournal(Journal* j, const Arguments* a, const char* title, ReadUnits* read, void* user)
+{
+    const char *from = a->resume, *to = a->checkpoint;
+    uint8_t* bytes = NULL;
+    size_t size = 0, kept = 0;
+    int code = EXIT_DONE;
+    if (from != NULL) {
+        code = readWhole(from, &bytes, &size) ? read(user, from, bytes, size, &kept) : EXIT_USAGE;
+    }
+    const bool same = from != NULL && to != NULL && strcmp(from, to) == 0;
+    if (code == EXIT_DONE && to != NULL && !same && access(to, F_OK) == 0) {
+        complain("%s: is there already; go on with --resume %s, or delete it", to, to);
+        code = EXIT_USAGE;
+    }
+    if (code == EXIT_DONE && to != NULL) {
+        const bool fresh = kept == 0 && title != NULL;
+        code = beginFile(j, to, fresh ? (const void*)title : bytes, fresh ? strlen(title) : kept)
+                   ? EXIT_DONE
+                   : EXIT_COULD_NOT;
+    }
+    free(bytes);
+    return code;
+}
+
 bool appendJournal(Journal* j, const void* bytes, size_t size)
 {
-    if (j->file < 0) {
-        return true;
+    if (j->file < 0 || j->failed) {
+        return !j->failed;
     }
     for (size_t at = 0; at < size;) {
         const ssize_t put = write(j->file, (const char*)bytes + at, size - at);
@@ -59,6 +84,7 @@ bool appendJournal(Journal* j, const void* bytes, size_t size)
             continue;
         }
         if (put <= 0) {
+            j->failed = true;
             complain("%s: cannot write: %s; it keeps what was finished before", j->path, strerror(errno));
             if (ftruncate(j->file, (off_t)j->size) == 0) {
                 lseek(j->file, (off_t)j->size, SEEK_SET);

@@ -103,6 +103,7 @@ static int render(Ranks* r)
 {
     vplContext* context = openContext(r->arguments);
     vplScene* scene = NULL;
+    r->context = context;
     int code = largestNumber(r, context != NULL ? EXIT_DONE : EXIT_COULD_NOT);
     code = code == EXIT_DONE ? shareScene(r, context, &scene) : code;
     if (code == EXIT_DONE) {

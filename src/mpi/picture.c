@@ -49,8 +49,9 @@ static int takePiece(void* user, int index, const uint8_t* bytes, size_t size)
 // ---- going on with a file of pieces
 
 // Adds the pieces at the front of a file. *keptOut is the size of those that are whole.
-static int readPieces(Picture* p, const char* path, const uint8_t* bytes, size_t size, size_t* keptOut)
+static int readPieces(void* user, const char* path, const uint8_t* bytes, size_t size, size_t* keptOut)
 {
+    Picture* p = user;
     size_t at = 0, used = 0;
     vplResult result = VPL_SUCCESS;
     while (at < size && result == VPL_SUCCESS) {
@@ -71,33 +72,7 @@ static int readPieces(Picture* p, const char* path, const uint8_t* bytes, size_t
         return exitCode(result, true);
     }
     *keptOut = at;
-    return EXIT_DONE;
-}
-
-// Reads --resume and opens --checkpoint.
-static int openFiles(Picture* p)
-{
-    const Arguments* a = p->ranks->arguments;
-    uint8_t* bytes = NULL;
-    size_t size = 0, kept = 0;
-    int code = EXIT_DONE;
-    if (a->resume != NULL) {
-        code =
-            readWhole(a->resume, &bytes, &size) ? readPieces(p, a->resume, bytes, size, &kept) : EXIT_USAGE;
-    }
-    if (code == EXIT_DONE) {
-        code = exitCode(vplAssembly_CheckRenderer(p->assembly, p->renderer), true);
-    }
-    const bool same = a->resume != NULL && a->checkpoint != NULL && strcmp(a->resume, a->checkpoint) == 0;
-    if (code == EXIT_DONE && a->checkpoint != NULL && !same && access(a->checkpoint, F_OK) == 0) {
-        complain("%s: is there already; go on with --resume %s, or delete it", a->checkpoint, a->checkpoint);
-        code = EXIT_USAGE;
-    }
-    if (code == EXIT_DONE && a->checkpoint != NULL && !openJournal(&p->journal, a->checkpoint, bytes, kept)) {
-        code = EXIT_COULD_NOT;
-    }
-    free(bytes);
-    return code;
+    return exitCode(vplAssembly_CheckRenderer(p->assembly, p->renderer), true);
 }
 
 // ---- the division
@@ -124,7 +99,7 @@ static int prepare(Picture* p, const vplScene* scene, Work* work)
     int code = exitCode(vplRenderer_Create(scene, &options, &p->renderer), true);
     if (code == EXIT_DONE && zero) {
         code = exitCode(vplAssembly_Create(p->context, &p->assembly), false);
-        code = code == EXIT_DONE ? openFiles(p) : code;
+        code = code == EXIT_DONE ? openJournal(&p->journal, p->ranks->arguments, NULL, readPieces, p) : code;
         code = code == EXIT_DONE ? exitCode(divide(p), true) : code;
     }
     code = largestNumber(p->ranks, code);

@@ -4,6 +4,7 @@
 
 #include <mpi.h>
 #include <stdlib.h>
+#include <string.h>
 
 // A broadcast is counted as the messages that its sender would need to reach all others one by one.
 static void countBroadcast(Ranks* r, size_t bytes)
@@ -41,8 +42,8 @@ bool shareBytes(Ranks* r, uint8_t** bytes, size_t* size)
         free(room);
         return false;
     }
-    for (size_t i = 0; r->rank == 0 && i < length; i++) {
-        room[i] = (*bytes)[i];
+    if (r->rank == 0 && length > 0) {
+        memcpy(room, *bytes, (size_t)length);
     }
     MPI_Bcast(room, (int)words, MPI_UINT64_T, 0, MPI_COMM_WORLD);
     countBroadcast(r, 8 * words + sizeof length);

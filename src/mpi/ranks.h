@@ -27,6 +27,7 @@ typedef struct Ranks {
     RankStats stats; // of this rank
     RankStats* all;  // of every rank, at rank 0 after runWork
     const Arguments* arguments;
+    vplContext* context;
     char speaker[64]; // the name of this rank in sentences
 } Ranks;
 
@@ -81,13 +82,15 @@ typedef struct Journal {
     int file; // -1: none
     const char* path;
     int64_t size; // bytes that are whole
+    bool failed;  // a write failed, which was told; nothing more is written
 } Journal;
 
-// Reads a file to memory; false after complaining. *bytesOut is freed with free.
-bool readWhole(const char* path, uint8_t** bytesOut, size_t* sizeOut);
+// Takes the finished units of a file into account, and sets how many of its bytes are whole units. An exit code.
+typedef int ReadUnits(void* user, const char* path, const uint8_t* bytes, size_t size, size_t* keptOut);
 
-// Opens the file so that it has the first `size` of `bytes`, which a resumed job keeps. False after complaining.
-bool openJournal(Journal* journal, const char* path, const uint8_t* bytes, size_t size);
+// Reads the file of --resume, and opens that of --checkpoint, which then has what was kept, or else the text `title`
+// (NULL: nothing). An exit code; without these options nothing is done.
+int openJournal(Journal* journal, const Arguments* arguments, const char* title, ReadUnits* read, void* user);
 
 // Adds a unit. Where the disk is full the file keeps the units before; false after complaining.
 bool appendJournal(Journal* journal, const void* bytes, size_t size);

@@ -31,7 +31,8 @@ typedef struct Desk {
     int next, left, taken, todo; // the next unit; units not handed out; finished in this run; of this run
     int* given;                  // units that each rank has
     bool* gone;                  // ranks that ended
-    bool taking; // a result is being taken: what that allocates asks, too, and must not take another
+    // A result is being taken. Taking it calls the progress function, too, which must not take another one meanwhile.
+    bool taking;
     Incoming* incoming;
     // Other ranks
     int queue[AHEAD], queued;
@@ -270,6 +271,12 @@ static void makeUnit(Desk* d, int unit)
     }
 }
 
+static void finishStats(Ranks* r)
+{
+    r->stats.cpuMs = cpuMs();
+    r->stats.peakBytes = (double)vplContext_GetPeakBytes(r->context);
+}
+
 static void workAtOthers(Desk* d)
 {
     while (!d->stopping) {
@@ -284,8 +291,8 @@ static void workAtOthers(Desk* d)
         }
     }
     awaitSent(d);
-    d->ranks->stats.cpuMs = cpuMs();
-    d->ranks->stats.messages += 1;
+    finishStats(d->ranks);
+    d->ranks->stats.messages += 1; // the statistics count their own message
     d->ranks->stats.bytes += sizeof(RankStats);
     MPI_Send(&d->ranks->stats, sizeof(RankStats), MPI_BYTE, 0, TAG_BYE, MPI_COMM_WORLD);
 }
@@ -326,7 +333,7 @@ static void workAtZero(Desk* d)
             finishIncoming(d);
         }
     }
-    d->ranks->stats.cpuMs = cpuMs();
+    finishStats(d->ranks);
     d->ranks->all[0] = d->ranks->stats;
 }
 
