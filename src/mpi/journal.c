@@ -42,7 +42,10 @@ static bool readWhole(const char* path, uint8_t** bytesOut, size_t* sizeOut)
 static bool beginFile(Journal* j, const char* path, const void* bytes, size_t size)
 {
     *j = (Journal){.file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666), .path = path};
-    if (j->file < 0 || !appendJournal(j, bytes, size) || ftruncate(j->file, (off_t)size) != 0) {
+    if (j->file >= 0 && !appendJournal(j, bytes, size)) {
+        return false;
+    }
+    if (j->file < 0 || ftruncate(j->file, (off_t)size) != 0) {
         complain("%s: cannot write: %s", path, strerror(errno));
         return false;
     }

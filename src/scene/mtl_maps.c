@@ -7,14 +7,16 @@
 
 #include <string.h>
 
-// Cuts the next word off if it is a number.
+// Cuts the next word off if it is a number; else *out stays what it is.
 static bool nextNumber(vplWord* line, float* out)
 {
     vplWord ahead = *line, word;
-    if (!vplNextWord(&ahead, &word) || !vplReadNumber(word.start, word.end, out) ||
-        !(*out >= -VPL_MAX_MAGNITUDE && *out <= VPL_MAX_MAGNITUDE)) {
+    float number;
+    if (!vplNextWord(&ahead, &word) || !vplReadNumber(word.start, word.end, &number) ||
+        !(number >= -VPL_MAX_MAGNITUDE && number <= VPL_MAX_MAGNITUDE)) {
         return false;
     }
+    *out = number;
     *line = ahead;
     return true;
 }
