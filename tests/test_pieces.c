@@ -85,18 +85,26 @@ TEST(PiecesHaveTheBitsOfOneRender, 2)
     vplScene_Destroy(scene);
 }
 
+// Divides the room in three bands.
+static vplRenderer* openRoom(vplContext* context, const vplRenderOptions* o, vplScene** sceneOut,
+                             vplPieceGrid* gridOut)
+{
+    vplRenderer* r;
+    assert_int_equal(vplScene_Load(context, "tests/data/room.json", sceneOut), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Create(*sceneOut, o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Divide(r, 3, gridOut), VPL_SUCCESS);
+    return r;
+}
+
 TEST(DamagedPiecesAreRefused, 1)
 {
     const vplRenderOptions o = optionsOf("--method direct --antialias 1");
     vplScene* scene;
-    vplRenderer* r;
     vplAssembly* a;
     vplPieceGrid grid;
     uint8_t* bytes;
     size_t size = 0, used = 0;
-    assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Divide(r, 3, &grid), VPL_SUCCESS);
+    vplRenderer* r = openRoom(context, &o, &scene, &grid);
     assert_int_equal(vplRenderer_MakePiece(r, &grid, 1, &bytes, &size), VPL_SUCCESS);
     assert_int_equal(vplAssembly_Create(context, &a), VPL_SUCCESS);
     for (size_t cut = 0; cut < size; cut += cut < 100 ? 1 : size / 50) {
@@ -119,16 +127,14 @@ TEST(PiecesOfAnotherPictureDoNotFitTheRenderer, 1)
 {
     vplRenderOptions o = optionsOf("--method direct --antialias 1");
     vplScene* scene;
-    vplRenderer *r, *other;
+    vplRenderer* other;
     vplAssembly* a;
     vplPieceGrid grid;
     uint8_t* bytes;
     size_t size = 0, used = 0;
-    assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    vplRenderer* r = openRoom(context, &o, &scene, &grid);
     assert_int_equal(vplRenderOptions_Set(&o, "seed", "9"), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Create(scene, &o, &other), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Divide(r, 3, &grid), VPL_SUCCESS);
     assert_int_equal(vplAssembly_Create(context, &a), VPL_SUCCESS);
     assert_int_equal(vplAssembly_CheckRenderer(a, other), VPL_SUCCESS);
     assert_int_equal(vplRenderer_MakePiece(r, &grid, 0, &bytes, &size), VPL_SUCCESS);

@@ -393,3 +393,26 @@ TEST_ALONE(PeakBytesAreTrueWithinAQuarterForLargeCounts)
     }
     assert_int_equal(wrong, 0);
 }
+
+// 153 of 305 patches of the flat are groups of its 408 triangles. With a patch for each triangle there are none.
+TEST(PixelsGatherTheirLightWherePatchesAreGroups, 2)
+{
+    static const struct {
+        int patches, asked, gather;
+    } cases[] = {{300, -1, 16}, {300, 0, 0}, {300, 5, 5}, {1000, -1, 0}};
+    vplScene* scene;
+    assert_int_equal(vplScene_Load(context, "examples/scenes/flat.json", &scene), VPL_SUCCESS);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        o.method = VPL_METHOD_RADIOSITY;
+        o.radiosity.patches = cases[i].patches;
+        o.radiosity.gather = cases[i].asked;
+        vplPlan* plan = planOf(scene, &o);
+        assert_true((plan->patchGroups > 0) == (cases[i].patches == 300));
+        assert_int_equal(plan->options.radiosity.gather, cases[i].gather);
+        assert_true(plan->gathers == (cases[i].gather > 0));
+        assert_true(plan->options.pipeline.interleave > 0);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}

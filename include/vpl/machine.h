@@ -33,7 +33,7 @@ void vplContext_SetFiles(vplContext* context, const vplMemoryFile* files, int co
 typedef void vplFileFcn(void* user, const vplMemoryFile* file);
 
 // Tells `fcn` of all files that are read, so that a scene with what it names can be sent to another machine, where
-// vplContext_SetFiles takes the files. NULL (default): nobody is told.
+// vplContext_SetFiles takes the files. NULL (default): no function is called.
 void vplContext_SetFileObserver(vplContext* context, vplFileFcn* fcn, void* user);
 
 VPL_HEADER_END

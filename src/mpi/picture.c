@@ -55,7 +55,7 @@ static int readPieces(void* user, const char* path, const uint8_t* bytes, size_t
     size_t at = 0, used = 0;
     vplResult result = VPL_SUCCESS;
     while (at < size && result == VPL_SUCCESS) {
-        setSpeaker(NULL); // the sentence of a damaged end is a warning here
+        setSpeaker(NULL); // a damaged last piece is no error here: a warning follows
         result = vplAssembly_Add(p->assembly, bytes + at, size - at, path, &used);
         setSpeaker(p->ranks->speaker);
         at += result == VPL_SUCCESS ? used : 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Light of some points and spots that a tree chooses for each point, where there are too many to ask all.
 // Based on: Alejandro Conty Estevez and Christopher Kulla, Importance Sampling of Many Lights with Adaptive Tree
-// Splitting, HPG 2018. Departs: the random number of a point follows from its position, so that no stage has to hand
-// numbers down, and a picture of the same points has the same noise however it is drawn.
+// Splitting, HPG 2018. The random number of a point is here a hash of its position: no stage passes random numbers, and
+// the same points have the same noise in every pipeline.
 #include "base/hash.h"
 #include "math/vec.h"
 #include "shading/shading.h"
