@@ -57,7 +57,7 @@ void vplReflectiveMap_Destroy(vplReflectiveMap* map);
 int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray);
 
 // Finds the hit of the ray through a texel's centre, inside its triangle, and the ray's unit direction.
-// Returns false where no surface is.
+// Returns false where no surface is, and for texels that the map does not have.
 // Not checked, for speed: pointers must not be NULL.
 bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                              vplHit* hitOut, vplVec3* directionOut);
@@ -74,7 +74,7 @@ typedef struct vplReflectiveTexel {
     int triangle;   // index in the geometry
 } vplReflectiveTexel;
 
-// Returns false where no surface is. Solid angles are exact; a spot's falloff is taken at centres. In a
+// Returns false as vplReflectiveMap_GetHit does. Solid angles are exact; a spot's falloff is taken at centres. In a
 // closed room the flux of all texels is a point emitter's power to rounding, and a spot's power but for up to
 // 1/size^2.
 // Departs from Dachsbacher and Stamminger: flux is incident, so that it adds up for any colours.

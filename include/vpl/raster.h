@@ -169,7 +169,7 @@ typedef struct vplSubPixel {
 } vplSubPixel;
 
 // Sample i of `count` in every pixel. No two samples have the same x or the same y. The samples of an even
-// count and the centre, which every pixel shows anyway, are count + 1 points of one lattice.
+// count and the centre, which every pixel shows anyway, are count + 1 points of one lattice. Other numbers i give the centre.
 vplSubPixel vplSubPixel_OfSample(int i, int count);
 
 // A triangle that a pixel shows.

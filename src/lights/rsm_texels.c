@@ -130,6 +130,10 @@ static bool getCutOut(const vplReflectiveMap* map, const vplGeometry* geometry, 
 bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                              vplHit* hitOut, vplVec3* directionOut)
 {
+    const int64_t size = map->size;
+    if (texel < 0 || texel >= map->faceCount * size * size) {
+        return false;
+    }
     const bool solid = getSolidHit(map, geometry, texel, hitOut, directionOut);
     return (geometry->cutOuts != NULL &&
             getCutOut(map, geometry, texel, solid ? hitOut->t : INFINITY, hitOut, directionOut)) ||

@@ -265,6 +265,9 @@ vplSubPixel vplSubPixel_OfSample(int i, int count)
 {
     const int even = count % 2 == 0; // the centre is one more point, in the middle of the list
     double x, y;
+    if (i < 0 || i >= count) {
+        return (vplSubPixel){0, 0};
+    }
     vplPixelPoint(i + (even && i >= count / 2), count + even, &x, &y);
     return (vplSubPixel){(int)(256 * x) - 128, (int)(256 * y) - 128};
 }

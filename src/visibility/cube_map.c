@@ -31,7 +31,7 @@ vplCubeFrame vplCube_GetFrame(int face)
 bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut)
 {
     const float sum = fabsf(direction.x) + fabsf(direction.y) + fabsf(direction.z);
-    if (!(sum > 0)) { // also NaN
+    if (!(sum > 0) || size < 1) { // also NaN
         return false;
     }
     const vplCubeTexel texel = vplCubeTexelOf(direction.x, direction.y, direction.z);

@@ -13,7 +13,7 @@
 // Blocks of 4 x 4 texels along a side.
 static inline int32_t vplHemiMap_Blocks(int32_t size)
 {
-    return (size + VPL_BLOCK_SIDE - 1) / VPL_BLOCK_SIDE;
+    return size / VPL_BLOCK_SIDE + (size % VPL_BLOCK_SIDE > 0);
 }
 
 // Texels of all blocks.

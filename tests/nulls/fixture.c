@@ -223,8 +223,8 @@ static void makeRaster(void)
 static void makeRender(void)
 {
     f.options = vplRenderOptions_Create(f.context);
-    MUST(vplRenderOptions_SetAll(f.options,
-                                 "--size 8x8 --method keller --particles 4 --antialias 1 --passes 2"));
+    MUST(vplRenderOptions_SetAll(
+        f.options, "--size 8x8 --method keller --particles 4 --antialias 1 --passes 2 --patches 20"));
     MUST(vplPlan_Create(f.scene, f.options, NULL, &f.plan));
     MUST(vplRenderer_Create(f.scene, f.options, &f.renderer));
     MUST(vplRenderer_Divide(f.renderer, 1, &f.grid));
