@@ -31,7 +31,7 @@ typedef struct vplCubePoint {
 } vplCubePoint;
 
 // Finds the point where a direction of any length meets the cube, for a map with `size` texels a side. Ties
-// go to z, then y, then x. Returns false for the zero vector and NaN.
+// go to z, then y, then x. Returns false for the zero vector, NaN and sizes below 1.
 // Not checked, for speed: pointers must not be NULL.
 bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut);
 
