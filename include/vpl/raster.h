@@ -34,8 +34,8 @@ typedef struct vplVertices {
 typedef void vplVertexFcn(const void* uniforms, int first, int count, const vplVertices* out);
 
 // A block of fragments of one triangle. It is public because a fragment shader of the caller receives it: a call per block
-// costs a sixteenth of a call per fragment, and the shader's loop over lanes is vectorised. Lanes that are not covered hold finite numbers that are never written
-// to planes.
+// costs a sixteenth of a call per fragment, and the shader's loop over lanes is vectorised. Lanes that are not covered hold
+// finite numbers that are never written to planes.
 typedef struct vplFragments {
     int32_t covered[VPL_LANES];                 // -1 where the lane is a fragment, else 0
     float depth[VPL_LANES];                     // z/w; a shader with writesDepth sets it
