@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests of OBJ and MTL files: valid files arrive as they were written, damaged ones are reported by file,
 // line and column.
+#include "math/vec.h"
 #include "obj_support.h"
 
 // ---- damaged files
@@ -327,4 +328,67 @@ TEST_ALONE(SmoothingGroupsGiveNormals)
     assertNear((double)m->normals[m->indices[0]].y, 1, 0, "y", 0);
     assertNear((double)m->normals[m->indices[1]].z, 1, 0, "z", 0);
     closeDesk(&d);
+}
+
+enum { ARCH_PARTS = 8 };
+
+// Half a cylinder of radius 1 around the y axis, of quads that are wound outwards, inwards where `inwards` says so.
+static void writeArch(char* text, size_t size, bool (*inwards)(int part), bool doubled)
+{
+    size_t length = 0;
+    for (int i = 0; i <= ARCH_PARTS; i++) {
+        const double angle = VPL_PI * i / ARCH_PARTS;
+        length += (size_t)snprintf(text + length, size - length, "v %.6f 0 %.6f\nv %.6f 1 %.6f\n", cos(angle),
+                                   sin(angle), cos(angle), sin(angle));
+    }
+    length += (size_t)snprintf(text + length, size - length, "s 1\n");
+    for (int i = 0; i < ARCH_PARTS; i++) {
+        const int a = 2 * i + 1, b = a + 1, c = a + 3, d = a + 2;
+        const char* one = "f %d %d %d %d\n";
+        if (doubled || !inwards(i)) {
+            length += (size_t)snprintf(text + length, size - length, one, a, b, c, d);
+        }
+        if (doubled || inwards(i)) {
+            length += (size_t)snprintf(text + length, size - length, one, d, c, b, a);
+        }
+    }
+}
+
+static bool never(int part)
+{
+    return part < 0;
+}
+
+static bool everySecond(int part)
+{
+    return part % 2 == 1;
+}
+
+// The normals of an arch are those of the cylinder, on the side of each triangle's own, however its triangles are wound, and
+// where each is there twice.
+TEST_ALONE(SmoothNormalsDoNotDependOnTheWindingOfNeighbours)
+{
+    static const struct {
+        bool (*inwards)(int part);
+        bool doubled;
+    } cases[] = {{never, false}, {everySecond, false}, {never, true}};
+    for (int i = 0; i < 3; i++) {
+        Desk d;
+        char text[4096];
+        openDesk(&d);
+        writeArch(text, sizeof text, cases[i].inwards, cases[i].doubled);
+        const vplMeshDef* m = readText(&d, text);
+        assert_int_equal(m->triangleCount, (cases[i].doubled ? 4 : 2) * ARCH_PARTS);
+        for (int k = 0; k < 3 * m->triangleCount; k++) {
+            const uint32_t* triangle = m->indices + k / 3 * 3;
+            const vplVec3 p = m->positions[m->indices[k]], n = m->normals[m->indices[k]];
+            const vplVec3 own = vplCross(vplSub(m->positions[triangle[1]], m->positions[triangle[0]]),
+                                         vplSub(m->positions[triangle[2]], m->positions[triangle[0]]));
+            assert_true(vplDot(n, own) > 0);
+            // Ends of the arch have one neighbour only, and their normal is half a part from the cylinder's.
+            const bool end = fabsf(p.z) < 1e-5f;
+            assert_true(fabsf(n.x * p.x + n.z * p.z) > (end ? 0.98f : 0.9999f));
+        }
+        closeDesk(&d);
+    }
 }

@@ -9,6 +9,11 @@
 #include "math/vec.h"
 #include "scene/obj_number.h"
 
+#include <math.h>
+
+// Cosines, of which the second is that of a mean normal with the normal of a triangle.
+static const double OPPOSITE_COSINE = 0.5, LEAST_COSINE = 0.25;
+
 int64_t vplObj_ReadGroup(vplWord line)
 {
     vplWord word;
@@ -75,6 +80,17 @@ static void getTriangle(const Smoothing* s, int64_t triangle, vplVec3 at[3], vpl
     vplObj_FindNormal(at, normal); // triangles without area are left out before
 }
 
+// Files wind triangles of one surface both ways, or have each triangle twice, once for each side: a normal that is nearly
+// opposite to the sum so far is turned.
+static void addNormal(double sum[3], const double normal[3], double angle)
+{
+    const double length = sqrt(vplDot3(sum, sum));
+    const double weight = vplDot3(sum, normal) < -OPPOSITE_COSINE * length ? -angle : angle;
+    for (int axis = 0; axis < 3; axis++) {
+        sum[axis] += weight * normal[axis];
+    }
+}
+
 static vplResult addNormals(Smoothing* s, int64_t triangle)
 {
     vplVec3 at[3], normal = {0, 0, 0};
@@ -84,16 +100,26 @@ static vplResult addNormals(Smoothing* s, int64_t triangle)
         double n[3];
         vplToDouble3(normal, n);
         TRY(findSum(s, s->mesh->indices[3 * triangle + k], s->mesh->groups[triangle], &sum));
-        const double angle = angleAt(at, k);
-        for (int axis = 0; axis < 3; axis++) {
-            s->sums[sum].normal[axis] += angle * n[axis];
-        }
+        addNormal(s->sums[sum].normal, n, angleAt(at, k));
     }
     return VPL_SUCCESS;
 }
 
-// Turns the indices of points into those of vertices. Corners outside groups, and those at which normals cancel, have
-// the triangle's normal.
+// The mean normal at a corner of a triangle, on the side of the triangle's own normal. Where normals cancel, and on spikes,
+// the mean is nearly in the triangle's plane and would leave it black; such corners have the triangle's normal.
+static vplVec3 smoothNormal(const double sum[3], vplVec3 flat)
+{
+    double own[3];
+    vplToDouble3(flat, own);
+    const double length = sqrt(vplDot3(sum, sum)), along = vplDot3(sum, own);
+    if (!(length > 1e-6 && fabs(along) > LEAST_COSINE * length)) {
+        return flat;
+    }
+    const double scale = along < 0 ? -1 / length : 1 / length;
+    return vplVec((float)(scale * sum[0]), (float)(scale * sum[1]), (float)(scale * sum[2]));
+}
+
+// Turns the indices of points into those of vertices. Corners outside groups have the triangle's normal.
 static vplResult placeCorners(Smoothing* s, int64_t triangle)
 {
     vplVec3 at[3], flat = {0, 0, 0};
@@ -104,11 +130,7 @@ static vplResult placeCorners(Smoothing* s, int64_t triangle)
         if (s->mesh->groups[triangle] != 0) {
             uint32_t sum;
             TRY(findSum(s, *index, s->mesh->groups[triangle], &sum));
-            const double* n = s->sums[sum].normal;
-            const double length = sqrt(vplDot3(n, n));
-            if (length > 1e-6) {
-                normal = vplVec((float)(n[0] / length), (float)(n[1] / length), (float)(n[2] / length));
-            }
+            normal = smoothNormal(s->sums[sum].normal, flat);
         }
         const vplTexcoord texcoord =
             s->mesh->waiting != NULL ? s->mesh->waiting[3 * triangle + k] : (vplTexcoord){0, 0};
