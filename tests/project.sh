@@ -179,6 +179,22 @@ declared_symbols() {
 [ -n "$SANITIZE_FLAGS" ] || check SharedLibraryExportsTheListedSymbols same_symbols
 [ -n "$SANITIZE_FLAGS" ] || check HeadersDeclareWhatIsExported declared_symbols
 
+# The ABI stays as it is while the soname does, where abidiff is there to compare it.
+same_abi() {
+    tests/abi.sh check "$build"
+}
+abi_check_finds_changes() {
+    tests/abi.sh self "$build"
+}
+if [ -n "$SANITIZE_FLAGS" ]; then
+    echo "skipped: the ABI is not compared under a sanitizer"
+else
+    tests/abi.sh check "$build" | grep '^skipped' || {
+        check AbiStaysWithTheSoname same_abi
+        check AbiCheckFindsChanges abi_check_finds_changes
+    }
+fi
+
 # The Python package, with NumPy and without it, and its script.
 python_package() {
     VPL_LIBRARY=$(realpath "$build/libvpl.so") PYTHONPATH=examples/python PYTHONDONTWRITEBYTECODE=1 \
@@ -215,7 +231,7 @@ installs_and_finds() {
         $(pkg-config --libs --static libvpl | sed 's/-lvpl//') -o "$scratch/static" &&
         "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags --libs libvpl) -o "$scratch/shared" &&
         "$cc" -std=gnu11 examples/stages.c $(pkg-config --cflags --libs libvpl) -o "$scratch/stages" &&
-        readelf -d "$scratch/shared" | grep -q 'libvpl\.so\.0\.1\]' &&
+        readelf -d "$scratch/shared" | grep -q 'libvpl\.so\.0\.2\]' &&
         "$scratch/static" $scene "$scratch/static.pfm" && "$scratch/shared" $scene "$scratch/shared.pfm" &&
         cmp "$scratch/static.pfm" "$scratch/shared.pfm" && [ -s "$prefix/share/man/man1/vpl.1" ]
 }
