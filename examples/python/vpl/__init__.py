@@ -41,8 +41,9 @@ class _Target(ctypes.Structure):
 
 def _find_library():
     here = os.path.dirname(os.path.abspath(__file__))
+    installed = os.path.join(here, "libvpl.so")  # by wheel.py
     built = os.path.join(here, "..", "..", "..", "build", "libvpl.so")
-    for path in (os.environ.get("VPL_LIBRARY"), built):
+    for path in (os.environ.get("VPL_LIBRARY"), installed, built):
         if path and os.path.exists(path):
             return path
     return "libvpl.so.%d.%d" % VERSION
