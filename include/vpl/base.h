@@ -138,10 +138,6 @@ void vplContext_Destroy(vplContext* context);
 // the text, which stays until a call fails again. Texts of more than 4,000 bytes lack their middle.
 const char* vplContext_GetLastMessage(const vplContext* context);
 
-// Plans of renders that need more memory than this, bytes, are refused with VPL_OUT_OF_MEMORY before they begin; 0
-// (default): none is. Allocations themselves have no limit. No picture's bits depend on it.
-void vplContext_SetMemoryLimit(vplContext* context, size_t bytes);
-
 // Sets the function by which calls without a progress argument, such as those that read scenes and pictures, can be
 // cancelled. They call it with a fraction of 0, also while a pipe that they read is silent, and return VPL_CANCELLED when
 // it returns false. NULL (default): nothing is called. Renders call vplRenderOptions.progress instead. `progress` is called
