@@ -34,8 +34,8 @@ breaks() {
 what_to_do() {
     cat <<END
 The ABI of $soname has changed since $1: programs that were built with it break. Either undo the changes above, or raise
-VPL_VERSION_MINOR and VPL_VERSION_STRING in include/vpl/base.h, and VERSION in examples/python/vpl/__init__.py, build, run
-tests/abi.sh write $build, and remove tests/data/$soname.abi.gz.
+VPL_VERSION_MINOR and VPL_VERSION_STRING in include/vpl/base.h, VERSION in examples/python/vpl/__init__.py and the version in
+examples/embed/package/CMakeLists.txt, build, run tests/abi.sh write $build, and remove tests/data/$soname.abi.gz.
 END
 }
 

@@ -282,7 +282,7 @@ installs_and_finds() {
         $(pkg-config --libs --static libvpl | sed 's/-lvpl//') -o "$scratch/static" &&
         "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags --libs libvpl) -o "$scratch/shared" &&
         "$cc" -std=gnu11 examples/stages.c $(pkg-config --cflags --libs libvpl) -o "$scratch/stages" &&
-        readelf -d "$scratch/shared" | grep -q 'libvpl\.so\.0\.2\]' &&
+        readelf -d "$scratch/shared" | grep -qF "[$(readlink "$build/libvpl.so")]" &&
         "$scratch/static" $scene "$scratch/static.pfm" && "$scratch/shared" $scene "$scratch/shared.pfm" &&
         cmp "$scratch/static.pfm" "$scratch/shared.pfm" && [ -s "$prefix/share/man/man1/vpl.1" ]
 }
