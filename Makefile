@@ -74,7 +74,7 @@ SONAME         := libvpl.so.$(shell echo $(VERSION) | sed -e 's/^\(0\.[0-9]*\).*
 SHARED         := libvpl.so.$(VERSION)
 # Calls with wrong arguments are written by a Python program.
 NULLS          := $(if $(shell command -v python3),$(BUILD)/nulls)
-EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
+EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c examples/tasks/*.c))
 
 .PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install uninstall clean format fuzz soak faults coverage test-mpi
 
@@ -299,6 +299,8 @@ $(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(MEASURE) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
+# Examples see public headers only.
+$(BUILD)/obj/examples/%: INCLUDES := -Iinclude
 $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"

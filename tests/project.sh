@@ -50,8 +50,9 @@ declares() { # declares HEADER: the exported functions that a program sees which
 renders_by_few_functions() {
     declares vpl.h >"$scratch/few"
     wc -l <"$scratch/few"
-    # Contexts, scenes, options, pictures, plans, renders and pieces: 83, of which 12 make defs.
-    [ "$(wc -l <"$scratch/few")" -ge 60 ] && [ "$(wc -l <"$scratch/few")" -le 85 ] && grep -qx vplRender "$scratch/few" &&
+    # Contexts, scenes, options, pictures, plans and renders: 65, of which 12 make defs.
+    [ "$(wc -l <"$scratch/few")" -ge 50 ] && [ "$(wc -l <"$scratch/few")" -le 65 ] && grep -qx vplRender "$scratch/few" &&
+        grep -q "the $(wc -l <"$scratch/few") functions that rendering needs, .*all $(wc -l <tests/data/symbols.txt)" README.md &&
         ! grep -E '^vpl(Geometry|Raster|Ray|Shadow|CubeMap|Patch|FormFactor|Simulate)' "$scratch/few"
 }
 stages_declare_all() {
@@ -69,6 +70,7 @@ writes() {
 check ExampleHelloRuns writes "$scratch/hello.png" "$build/examples/hello" $scene "$scratch/hello.png"
 check ExampleStagesRuns writes "$scratch/stages.png" "$build/examples/stages" $scene "$scratch/stages.png"
 check ExampleSceneByHandRuns writes "$scratch/hand.png" "$build/examples/scene_by_hand" "$scratch/hand.png"
+check ExamplePatternsRuns writes "$scratch/leaf.png" "$build/examples/patterns" "$scratch"
 check ExampleRasterizerRuns writes "$scratch/raster.png" "$build/examples/rasterizer" "$scratch/raster.png"
 check ExampleDeadlineRuns writes "$scratch/deadline.png" "$build/examples/deadline" $scene "$scratch/deadline.png" 3000
 bakes_points() {
@@ -85,6 +87,32 @@ walks_in_a_terminal() {
     (sleep 4 && printf 'wq') | timeout 60 script -qec "$build/examples/interactive $scene" /dev/null | grep -aq '[0-9] passes'
 }
 ! command -v script >/dev/null || check ExampleInteractiveRunsInATerminal walks_in_a_terminal
+# Ten tasks: each program checks what comes out, and the table of examples/README.md has its number of lines.
+does_task() { # does_task NAME WORDS...
+    task=$1
+    shift
+    lines=$(grep -vcE '^[[:space:]]*(//.*)?$|^#' "examples/tasks/$task.c")
+    grep -qE "^\| \[$task\]\(tasks/$task.c\)[^|]*\| *[0-9]+ \| $lines \|" examples/README.md || {
+        echo "examples/README.md does not have $task with its $lines lines"
+        return 1
+    }
+    "$build/examples/tasks/$task" "$@"
+}
+check TaskMeshToPicture does_task mesh_to_picture "$scratch/mesh.png"
+check TaskProgressive does_task progressive $scene
+check TaskOwnShader does_task own_shader
+check TaskBakePoints does_task bake_points $scene
+check TaskPcfFactor does_task pcf_factor
+check TaskPlaneBias does_task plane_bias
+check TaskKMeans does_task k_means
+check TaskFormFactor does_task form_factor
+check TaskComparePictures does_task compare_pictures "$scratch/mesh.png" "$scratch/mesh.png"
+check TaskComparePicturesRefusesOtherSizes refuses does_task compare_pictures "$scratch/mesh.png" "$scratch/hand.png"
+check TaskChangeMaterial does_task change_material
+every_task() {
+    [ "$(ls examples/tasks/*.c | wc -l)" -eq 10 ] && [ "$(grep -c '](tasks/.*\.c)' examples/README.md)" -eq 10 ]
+}
+check TasksAreAllInTheTable every_task
 examples_name_failures() {
     for example in hello stages; do
         ! "$build/examples/$example" nowhere.json "$scratch/nowhere.png" 2>"$scratch/errors" &&
@@ -179,6 +207,22 @@ declared_symbols() {
 [ -n "$SANITIZE_FLAGS" ] || check SharedLibraryExportsTheListedSymbols same_symbols
 [ -n "$SANITIZE_FLAGS" ] || check HeadersDeclareWhatIsExported declared_symbols
 
+# The ABI stays as it is while the soname does, where abidiff is there to compare it.
+same_abi() {
+    tests/abi.sh check "$build"
+}
+abi_check_finds_changes() {
+    tests/abi.sh self "$build"
+}
+if [ -n "$SANITIZE_FLAGS" ]; then
+    echo "skipped: the ABI is not compared under a sanitizer"
+else
+    tests/abi.sh check "$build" | grep '^skipped' || {
+        check AbiStaysWithTheSoname same_abi
+        check AbiCheckFindsChanges abi_check_finds_changes
+    }
+fi
+
 # The Python package, with NumPy and without it, and its script.
 python_package() {
     VPL_LIBRARY=$(realpath "$build/libvpl.so") PYTHONPATH=examples/python PYTHONDONTWRITEBYTECODE=1 \
@@ -189,6 +233,23 @@ python_script() {
         "$python" examples/python/error_curve.py $scene "$scratch/curve.png" | awk '
             { last = $3 } NR == 1 { first = $3 } END { print first, last; exit !(NR == 6 && last + 0 < first / 2) }'
 }
+# The three lines of its README, without a network, where there is nothing but a built library. Arguments of venv may be added.
+python_lines() { # python_lines PYTHON [ARGUMENT]
+    rm -rf "$scratch/python" && mkdir -p "$scratch/python/build" "$scratch/python/include" "$scratch/python/examples" || return 1
+    cp -r include/vpl "$scratch/python/include" && cp -r examples/python examples/scenes "$scratch/python/examples" &&
+        ln -s "$(realpath "$build/libvpl.so")" "$scratch/python/build/libvpl.so" || return 1
+    sed -n '/^```sh$/,/^```$/p' examples/python/README.md | grep -v '^```' | sed "s|^python3 -m venv|$1 -m venv $2|" \
+        >"$scratch/python/lines"
+    [ "$(wc -l <"$scratch/python/lines")" -eq 3 ] &&
+        (cd "$scratch/python" && unset PYTHONPATH VPL_LIBRARY && PIP_NO_INDEX=1 PYTHONDONTWRITEBYTECODE=1 sh -ex lines) &&
+        [ -s "$scratch/python/build/room.png" ]
+}
+python_lines_with_numpy() {
+    python_lines "$python" --system-site-packages && (cd "$scratch/python" && build/env/bin/python -c '
+import numpy, os, vpl
+assert "build/env" in vpl.__file__ and os.path.exists(os.path.join(os.path.dirname(vpl.__file__), "libvpl.so"))
+assert isinstance(vpl.render("examples/scenes/room.json", method="direct", size=(32, 18)), numpy.ndarray)')
+}
 python=
 for candidate in python3 /usr/bin/python3; do
     ! "$candidate" -c 'import numpy' 2>/dev/null || python=$candidate
@@ -197,9 +258,15 @@ if [ -n "$SANITIZE_FLAGS" ] || ! command -v python3 >/dev/null; then
     echo "skipped: PythonPackage needs python3 and no sanitizer"
 else
     check PythonPackageWithoutNumPy python_package python3 -S
+    if python3 -c 'import ensurepip, venv' 2>/dev/null; then
+        check PythonReadmeRunsInAnEmptyEnvironment python_lines python3
+    else
+        echo "skipped: PythonReadmeRunsInAnEmptyEnvironment needs python3-venv"
+    fi
     if [ -n "$python" ]; then
         check PythonPackageWithNumPy python_package "$python"
         check PythonErrorCurveFalls python_script
+        ! "$python" -c 'import ensurepip, venv' 2>/dev/null || check PythonReadmeRunsWithNumPy python_lines_with_numpy
     else
         echo "skipped: PythonPackageWithNumPy needs python3-numpy"
     fi
@@ -215,7 +282,7 @@ installs_and_finds() {
         $(pkg-config --libs --static libvpl | sed 's/-lvpl//') -o "$scratch/static" &&
         "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags --libs libvpl) -o "$scratch/shared" &&
         "$cc" -std=gnu11 examples/stages.c $(pkg-config --cflags --libs libvpl) -o "$scratch/stages" &&
-        readelf -d "$scratch/shared" | grep -q 'libvpl\.so\.0\.1\]' &&
+        readelf -d "$scratch/shared" | grep -qF "[$(readlink "$build/libvpl.so")]" &&
         "$scratch/static" $scene "$scratch/static.pfm" && "$scratch/shared" $scene "$scratch/shared.pfm" &&
         cmp "$scratch/static.pfm" "$scratch/shared.pfm" && [ -s "$prefix/share/man/man1/vpl.1" ]
 }

@@ -35,9 +35,9 @@
 VPL_HEADER_BEGIN
 
 #define VPL_VERSION_MAJOR  0
-#define VPL_VERSION_MINOR  1
+#define VPL_VERSION_MINOR  2
 #define VPL_VERSION_PATCH  0
-#define VPL_VERSION_STRING "0.1.0"
+#define VPL_VERSION_STRING "0.2.0"
 
 // Largest width or height of an image, in pixels.
 #define VPL_MAX_IMAGE_SIZE 16384
@@ -137,10 +137,6 @@ void vplContext_Destroy(vplContext* context);
 // The sentence of the last call that failed, "" before one does; NULL as context is allowed and gives "". The context owns
 // the text, which stays until a call fails again. Texts of more than 4,000 bytes lack their middle.
 const char* vplContext_GetLastMessage(const vplContext* context);
-
-// Plans of renders that need more memory than this, bytes, are refused with VPL_OUT_OF_MEMORY before they begin; 0
-// (default): none is. Allocations themselves have no limit. No picture's bits depend on it.
-void vplContext_SetMemoryLimit(vplContext* context, size_t bytes);
 
 // Sets the function by which calls without a progress argument, such as those that read scenes and pictures, can be
 // cancelled. They call it with a fraction of 0, also while a pipe that they read is silent, and return VPL_CANCELLED when

@@ -75,45 +75,9 @@ vplResult vplImage_CopyTo(const vplImage* image, const vplPixelsDef* pixels);
 // VPL_OUT_OF_MEMORY.
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options);
 
-// Encodes the file that vplImage_Write would write under the name, such as ".png"; `options` NULL means defaults. Free the
-// bytes with vplBytes_Free.
-vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
-                          uint8_t** bytesOut, size_t* sizeOut);
-
-// Frees the bytes from vplImage_Encode. NULL is allowed.
-void vplBytes_Free(vplContext* context, uint8_t* bytes);
-
 // Reads .png, .jpg, .bmp and .tga (sRGB, decoded to linear), .hdr, .pfm and, where OpenEXR is built in, .exr.
 // VPL_INVALID_ARGUMENT for another extension, VPL_FILE_ERROR, VPL_PARSE_ERROR, VPL_OUT_OF_MEMORY.
 vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageOut);
-
-// Kinds of layers of an .exr file.
-typedef enum vplLayerKind {
-    VPL_LAYER_COLOUR = 0, // three float channels: NAME.R, NAME.G and NAME.B, or R, G and B without a name
-    VPL_LAYER_VECTOR,     // three float channels: NAME.X, NAME.Y and NAME.Z
-    VPL_LAYER_NUMBER,     // one float channel, NAME
-    VPL_LAYER_INDEX       // one channel of whole numbers (UINT), NAME
-} vplLayerKind;
-
-// A picture with a name, as .exr files hold several.
-typedef struct vplLayer {
-    const char* name; // up to VPL_MAX_LAYER_NAME bytes; "" is the picture that all programs show
-    vplLayerKind kind;
-    const vplImage* image; // numbers and indices are in red; indices are whole, [0, VPL_MAX_LAYER_INDEX]
-    // Names of the indices 1, 2, ... nameCount, written into the header as the string vector "NAME.names"; 0:
-    // they are not.
-    const char** names;
-    int nameCount;
-} vplLayer;
-
-// The largest index: floats hold all whole numbers up to it.
-enum { VPL_MAX_LAYER_INDEX = 1 << 24, VPL_MAX_LAYER_NAME = 24 };
-
-// Writes layers of one size into one .exr file, lossless. The file appears whole or not at all.
-// VPL_INVALID_ARGUMENT for another extension, a build without OpenEXR, layers that differ in size, a channel
-// that occurs twice, an index out of range, or a pixel that is NaN or infinite; VPL_FILE_ERROR;
-// VPL_OUT_OF_MEMORY.
-vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path);
 
 // The difference between picture A and reference B. Sums run over all pixels and channels in row order, in
 // double.
@@ -132,7 +96,7 @@ typedef struct vplComparison {
     int maxX, maxY;
 } vplComparison;
 
-// Compares two pictures. This and the following functions fail with VPL_INVALID_ARGUMENT if the pictures
+// Compares two pictures. This and the comparisons of imagetools.h fail with VPL_INVALID_ARGUMENT if the pictures
 // differ in size or have a pixel that is NaN or infinite, and with VPL_OUT_OF_MEMORY.
 vplResult vplImage_Compare(const vplImage* a, const vplImage* b, vplComparison* comparisonOut);
 

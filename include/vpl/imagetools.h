@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures from the inside: hashes, names and layers of files, tone maps, metrics and false colours by themselves.
+// Pictures from the inside: hashes, encoded files, layers, tone maps, metrics and false colours by themselves.
 #ifndef VPL_IMAGETOOLS_H
 #define VPL_IMAGETOOLS_H
 
@@ -16,6 +16,42 @@ bool vplImage_CanWrite(const char* path);
 
 // The extensions that can be written, for messages: ".png, .hdr, .pfm or .exr" where OpenEXR is built in.
 const char* vplImage_GetExtensions(void);
+
+// Encodes the file that vplImage_Write would write under the name, such as ".png"; `options` NULL means defaults. Free the
+// bytes with vplBytes_Free.
+vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
+                          uint8_t** bytesOut, size_t* sizeOut);
+
+// Frees the bytes from vplImage_Encode. NULL is allowed.
+void vplBytes_Free(vplContext* context, uint8_t* bytes);
+
+// Kinds of layers of an .exr file.
+typedef enum vplLayerKind {
+    VPL_LAYER_COLOUR = 0, // three float channels: NAME.R, NAME.G and NAME.B, or R, G and B without a name
+    VPL_LAYER_VECTOR,     // three float channels: NAME.X, NAME.Y and NAME.Z
+    VPL_LAYER_NUMBER,     // one float channel, NAME
+    VPL_LAYER_INDEX       // one channel of whole numbers (UINT), NAME
+} vplLayerKind;
+
+// A picture with a name, as .exr files hold several.
+typedef struct vplLayer {
+    const char* name; // up to VPL_MAX_LAYER_NAME bytes; "" is the picture that all programs show
+    vplLayerKind kind;
+    const vplImage* image; // numbers and indices are in red; indices are whole, [0, VPL_MAX_LAYER_INDEX]
+    // Names of the indices 1, 2, ... nameCount, written into the header as the string vector "NAME.names"; 0:
+    // they are not.
+    const char** names;
+    int nameCount;
+} vplLayer;
+
+// The largest index: floats hold all whole numbers up to it.
+enum { VPL_MAX_LAYER_INDEX = 1 << 24, VPL_MAX_LAYER_NAME = 24 };
+
+// Writes layers of one size into one .exr file, lossless. The file appears whole or not at all.
+// VPL_INVALID_ARGUMENT for another extension, a build without OpenEXR, layers that differ in size, a channel
+// that occurs twice, an index out of range, or a pixel that is NaN or infinite; VPL_FILE_ERROR;
+// VPL_OUT_OF_MEMORY.
+vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path);
 
 // Reads one layer of an .exr file: the channels R, G and B or X, Y and Z behind NAME and a dot, or the
 // channel NAME alone, which all three values of the picture receive. Errors as vplImage_Read, and

@@ -15,6 +15,10 @@ size_t vplContext_GetBytes(const vplContext* context);
 size_t vplContext_GetPeakBytes(const vplContext* context);
 void vplContext_ResetPeakBytes(vplContext* context);
 
+// Plans of renders that need more memory than this, bytes, are refused with VPL_OUT_OF_MEMORY before they begin; 0
+// (default): none is. Allocations themselves have no limit. No picture's bits depend on it.
+void vplContext_SetMemoryLimit(vplContext* context, size_t bytes);
+
 // The instruction set in use (never VPL_ISA_AUTO) and the number of workers (never 0).
 vplIsa vplContext_GetIsa(const vplContext* context);
 int vplContext_GetWorkerCount(const vplContext* context);

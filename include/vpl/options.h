@@ -278,10 +278,6 @@ vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, cons
 // refused stays set.
 vplResult vplRenderOptions_SetAll(vplRenderOptions* options, const char* words);
 
-// The inverse of vplRenderOptions_Set: writes the value of an option as vplRenderOptions_Set reads it.
-// VPL_INVALID_ARGUMENT if there is no such option or `size` bytes are too few.
-vplResult vplRenderOptions_Get(const vplRenderOptions* options, const char* name, char* textOut, size_t size);
-
 VPL_HEADER_END
 
 #endif

@@ -18,6 +18,10 @@ void vplRenderOptions_SetProgress(vplRenderOptions* options, vplProgressFcn* pro
 // vplRenderOptions.problem.
 const char* vplRenderOptions_GetProblem(const vplRenderOptions* options);
 
+// The inverse of vplRenderOptions_Set: writes the value of an option as vplRenderOptions_Set reads it.
+// VPL_INVALID_ARGUMENT if there is no such option or `size` bytes are too few.
+vplResult vplRenderOptions_Get(const vplRenderOptions* options, const char* name, char* textOut, size_t size);
+
 // Tells whether the method and pipeline of `options` use an option. If not, and reasonOut is not NULL, it
 // gets the setting because of which the option has no effect, such as "--method keller".
 bool vplRenderOptions_IsUsed(const vplRenderOptions* options, const char* name, char* reasonOut, size_t size);

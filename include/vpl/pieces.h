@@ -5,6 +5,7 @@
 #define VPL_PIECES_H
 
 #include <vpl/render.h>
+#include <vpl/imagetools.h>
 
 VPL_HEADER_BEGIN
 

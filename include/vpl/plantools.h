@@ -158,6 +158,22 @@ struct vplMachine {
 // VPL_INVALID_ARGUMENT if a speed is not positive and finite; VPL_OUT_OF_MEMORY.
 vplResult vplContext_SetSpeeds(vplContext* context, const vplSpeeds* speeds);
 
+// Writes the plan as JSON: the version of the format, the hash of the scene (vplScene_GetHash), every option
+// as vplRenderOptions_Get writes it, decisions, stages, what is left out, and estimates.
+// vplRenderOptions_Load reads the options back, and they render the same bits with any number of threads,
+// instruction set and compiler, as far as no time ends the render; see vplRenderer_WritePlan. Options are
+// resolved, as in vplPlan.options, but for three that mean something else as a number or word: min-distance
+// stays auto, because each pass has its own; light-shadows stays auto where rays were chosen, because ray
+// also replaces shadow maps of emitters; hierarchy stays auto for adaptive patches.
+vplResult vplPlan_Write(const vplPlan* plan, const vplScene* scene, const char* path);
+
+// Sets the options that a plan file has; others stay as they are. *sceneHashOut (may be NULL) is the hash of
+// the file's scene, to be compared with vplScene_GetHash: with another scene the options are valid, but the
+// picture is another. VPL_FILE_ERROR, VPL_OUT_OF_MEMORY, or VPL_PARSE_ERROR with "file:line:column:" in its
+// message; then the options are as they were.
+vplResult vplRenderOptions_Load(vplContext* context, const char* path, vplRenderOptions* options,
+                                uint64_t* sceneHashOut);
+
 // The plan of the picture so far, which the renderer owns. Budgets and errors may replace it in the next step.
 const vplPlan* vplRenderer_GetPlan(const vplRenderer* renderer);
 

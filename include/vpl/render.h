@@ -85,26 +85,6 @@ typedef struct vplRenderStats {
 vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
                     vplRenderStats* statsOut);
 
-enum { VPL_MAX_LAYERS = 7 };
-
-// The picture of a render and its layers, in the order of vplAov, for vplImage_WriteLayers. Names of objects
-// are the scene's, which must outlive them.
-typedef struct vplLayers {
-    vplLayer layers[VPL_MAX_LAYERS]; // the first is the picture
-    int count;
-    vplImage* images[VPL_MAX_LAYERS]; // owned; those of the layers and others
-    const char** objectNames;         // owned; NULL where no object has a name
-    vplContext* context;
-} vplLayers;
-
-// Renders the picture of vplRender, with the same bits, and the layers of options.output.aovs. Destroy them
-// with vplLayers_Destroy. statsOut may be NULL; its imageHash is that of the picture.
-vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options, vplLayers** layersOut,
-                          vplRenderStats* statsOut);
-
-// NULL is allowed.
-void vplLayers_Destroy(vplLayers* layers);
-
 // A layer and the caller's memory that it goes to.
 typedef struct vplTarget {
     int layer;           // 0: the picture; else one of vplAov
@@ -117,6 +97,12 @@ typedef struct vplTarget {
 // statsOut may be NULL. VPL_CANCELLED, VPL_INVALID_ARGUMENT and what vplRender fails with.
 vplResult vplRenderTo(const vplScene* scene, const vplRenderOptions* options, const vplTarget* targets,
                       int targetCount, int* passesOut, vplRenderStats* statsOut);
+
+// Radiosity's patches as a mesh with colours at its vertices: the light that options.method
+// VPL_METHOD_RADIOSITY finds, direct and indirect, for tools that draw. Written by vplPatchMesh_WritePly; its
+// 8-bit colours are those of pictures of the same exposure (stops). statsOut may be NULL.
+vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float exposure, const char* path,
+                  vplRenderStats* statsOut);
 
 // Renders step by step, for windows, deadlines and progressive output: after each step the picture so far can
 // be read. Steps give the same bits as one call of vplRender. One step is one pass.
@@ -137,9 +123,6 @@ int vplRenderer_GetPassCount(const vplRenderer* renderer);
 
 // Gets the picture so far, after at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
 vplResult vplRenderer_GetImage(vplRenderer* renderer, vplImage** imageOut, vplRenderStats* statsOut);
-
-// Gets the picture so far and its layers, likewise; destroy them with vplLayers_Destroy. statsOut may be NULL.
-vplResult vplRenderer_GetLayers(vplRenderer* renderer, vplLayers** layersOut, vplRenderStats* statsOut);
 
 // NULL is allowed. The scene must outlive the renderer.
 void vplRenderer_Destroy(vplRenderer* renderer);

@@ -1,18 +1,37 @@
 // SPDX-License-Identifier: MIT
-// Renders from the inside: stopping and going on, errors, patches and virtual lights.
+// Renders from the inside: layers for files, stopping and going on, errors and virtual lights.
 #ifndef VPL_RENDERTOOLS_H
 #define VPL_RENDERTOOLS_H
 
 #include <vpl/render.h>
+#include <vpl/imagetools.h>
 #include <vpl/lights.h>
 
 VPL_HEADER_BEGIN
 
-// Radiosity's patches as a mesh with colours at its vertices: the light that options.method
-// VPL_METHOD_RADIOSITY finds, direct and indirect, for tools that draw. Written by vplPatchMesh_WritePly; its
-// 8-bit colours are those of pictures of the same exposure (stops). statsOut may be NULL.
-vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float exposure, const char* path,
-                  vplRenderStats* statsOut);
+enum { VPL_MAX_LAYERS = 7 };
+
+// The picture of a render and its layers, in the order of vplAov, for vplImage_WriteLayers. Names of objects
+// are the scene's, which must outlive them.
+typedef struct vplLayers {
+    vplLayer layers[VPL_MAX_LAYERS]; // the first is the picture
+    int count;
+    vplImage* images[VPL_MAX_LAYERS]; // owned; those of the layers and others
+    const char** objectNames;         // owned; NULL where no object has a name
+    vplContext* context;
+} vplLayers;
+
+// Renders the picture of vplRender, with the same bits, and the layers of options.output.aovs. Destroy them
+// with vplLayers_Destroy. statsOut may be NULL; its imageHash is that of the picture.
+vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options, vplLayers** layersOut,
+                          vplRenderStats* statsOut);
+
+// NULL is allowed.
+void vplLayers_Destroy(vplLayers* layers);
+
+// Gets the picture so far and its layers, as vplRenderer_GetImage does; destroy them with vplLayers_Destroy. statsOut may be
+// NULL.
+vplResult vplRenderer_GetLayers(vplRenderer* renderer, vplLayers** layersOut, vplRenderStats* statsOut);
 
 // Gets an estimate of where the picture's error lies: an image with one value per block of 8x8 pixels, whose red, green
 // and blue are the block's rmse, its noise and its bias, in W/(m^2 sr). Noise is measured (0 where there is one pass);

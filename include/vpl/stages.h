@@ -13,6 +13,7 @@
 #include <vpl/optiontools.h>
 #include <vpl/plantools.h>
 #include <vpl/rendertools.h>
+#include <vpl/pieces.h>
 
 // Stages, in the order in which a picture needs them.
 #include <vpl/geometry.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // libvpl: indirect light on the CPU, the same bits everywhere. A program that renders needs this header only: it declares
-// contexts, scenes, options by name, pictures, plans, renders and pieces of pictures. <vpl/stages.h> declares every stage by
-// itself.
+// contexts, scenes, options, pictures, plans and renders. <vpl/stages.h> declares every stage by itself.
 #ifndef VPL_VPL_H
 #define VPL_VPL_H
 
@@ -12,6 +11,5 @@
 #include <vpl/options.h>
 #include <vpl/plan.h>
 #include <vpl/render.h>
-#include <vpl/pieces.h>
 
 #endif

@@ -324,7 +324,8 @@ static const Option OWN[] = {
     {"isa", "auto|scalar|sse2|avx2|avx512", "auto", ~(INFO | COMPARE | MERGE), readChoice, AT(context.isa), 0,
      0, "instruction set: the same bits", NULL},
     {"quiet", NULL, NULL, ~0, readFlag, AT(quiet), 0, 0, "no progress bar, no warnings", NULL},
-    {"v", NULL, NULL, ~0, readFlag, AT(verbose), 0, 0, "say more", NULL},
+    {"v", NULL, NULL, ~0, readFlag, AT(verbose), 0, 0, "say what was decided, and how long each stage took",
+     NULL},
     {"help", NULL, NULL, ~0, readFlag, AT(help), 0, 0, "print the help of a command", NULL},
 };
 

@@ -77,6 +77,16 @@ static vplResult stepAll(const Arguments* a, vplRenderer* r, bool done, Picture*
     return result == VPL_SUCCESS && a->planOut != NULL ? vplRenderer_WritePlan(r, a->planOut) : result;
 }
 
+// -v: each decision that was left to the library, once for all frames.
+static void sayDecisions(const Arguments* a, const vplPlan* plan)
+{
+    const bool first = a->frames[1] < 0 || plan->options.sequence.frame == a->frames[0];
+    for (int i = 0; i < plan->decisionCount && a->verbose && first; i++) {
+        const vplDecision* d = &plan->decisions[i];
+        complain("--%s %s: %s", d->name, d->value, d->why);
+    }
+}
+
 int renderPicture(const Arguments* a, const vplScene* scene, const vplRenderOptions* options,
                   Picture* pictureOut, vplResult* resultOut)
 {
@@ -88,6 +98,7 @@ int renderPicture(const Arguments* a, const vplScene* scene, const vplRenderOpti
     if (*resultOut != VPL_SUCCESS) {
         return EXIT_DONE;
     }
+    sayDecisions(a, vplRenderer_GetPlan(r));
     if (!hasState(a, vplRenderer_GetPlan(r))) {
         code = EXIT_USAGE;
     } else if (a->resume != NULL) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/arena.h"
+#include "base/file_kind.h"
 #include "base/hash.h"
 #include "image/image_file.h"
 
@@ -71,13 +72,19 @@ typedef struct Format {
     const char* extension;
     vplEncodeFcn* encode; // NULL: read only
     vplDecodeFcn* decode;
+    const char* contents; // the endings of all formats that `decode` reads; NULL: TGA has no mark of its own
+    const char* what;
 } Format;
 
 static const Format FORMATS[] = {
-    {".png", vplEncodePng, vplDecodeLdr}, {".hdr", vplEncodeHdr, vplDecodeHdr},
-    {".pfm", vplEncodePfm, vplDecodePfm}, {".exr", vplEncodeExr, vplDecodeExr},
-    {".jpg", NULL, vplDecodeLdr},         {".jpeg", NULL, vplDecodeLdr},
-    {".bmp", NULL, vplDecodeLdr},         {".tga", NULL, vplDecodeLdr},
+    {".png", vplEncodePng, vplDecodeLdr, ".png.jpg", "a PNG picture"},
+    {".hdr", vplEncodeHdr, vplDecodeHdr, ".hdr", "a Radiance HDR picture"},
+    {".pfm", vplEncodePfm, vplDecodePfm, ".pfm", "a PFM picture"},
+    {".exr", vplEncodeExr, vplDecodeExr, ".exr", "an OpenEXR picture"},
+    {".jpg", NULL, vplDecodeLdr, ".png.jpg", "a JPEG picture"},
+    {".jpeg", NULL, vplDecodeLdr, ".png.jpg", "a JPEG picture"},
+    {".bmp", NULL, vplDecodeLdr, ".png.jpg", "a BMP picture"},
+    {".tga", NULL, vplDecodeLdr, NULL, "a TGA picture"},
 };
 
 static const Format* findFormat(const char* path)
@@ -247,7 +254,11 @@ vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageO
     char* bytes;
     size_t size;
     TRY(vplReadFile(context, path, &bytes, &size));
-    const vplResult result = format->decode(context, path, (const uint8_t*)bytes, size, imageOut);
+    vplResult result = format->contents == NULL
+                           ? VPL_SUCCESS
+                           : vplCheckFileKind(context, path, bytes, size, format->contents, format->what);
+    result =
+        result == VPL_SUCCESS ? format->decode(context, path, (const uint8_t*)bytes, size, imageOut) : result;
     vplFree(context, bytes);
     return result;
 }

@@ -2,6 +2,7 @@
 #include "scene/json_reader.h"
 #include "base/arena.h"
 #include "base/file.h"
+#include "base/file_kind.h"
 
 #include <float.h>
 #include <math.h>
@@ -33,6 +34,7 @@ static vplResult rejectNul(const vplJsonFile* file)
 
 static vplResult parse(vplJsonFile* file)
 {
+    TRY(vplCheckFileKind(file->context, file->name, file->text, file->size, ".json", "JSON"));
     TRY(rejectNul(file));
     json_error_t error;
     // Reads integers as reals, so that those beyond 64 bits are no error.

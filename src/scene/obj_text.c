@@ -2,6 +2,7 @@
 #include "scene/obj_text.h"
 #include "base/arena.h"
 #include "base/file.h"
+#include "base/file_kind.h"
 #include "scene/obj_number.h"
 
 #include <math.h>
@@ -130,7 +131,9 @@ vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut)
 {
     vplText text = {context, file, NULL, 0};
     TRY(vplReadFile(context, file, &text.bytes, &text.size));
-    const vplResult result = vplText_Normalise(&text);
+    vplResult result =
+        vplCheckFileKind(context, file, text.bytes, text.size, ".obj.mtl", "an OBJ or MTL file");
+    result = result == VPL_SUCCESS ? vplText_Normalise(&text) : result;
     if (result != VPL_SUCCESS) {
         vplText_Close(&text);
         return result;

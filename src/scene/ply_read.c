@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reads a PLY file as one mesh: elements "vertex", "face" and "tristrips"; all others are left out.
+#include "base/file_kind.h"
 #include "scene/ear_clipping.h"
 #include "scene/model.h"
 #include "scene/ply.h"
@@ -301,6 +302,7 @@ static vplResult read(Reader* r, vplRawMesh* out)
 
 vplResult vplReadPly(vplText* bytes, vplArena* scratch, int material, vplRawMesh* out)
 {
+    TRY(vplCheckFileKind(bytes->context, bytes->file, bytes->bytes, bytes->size, ".ply", "a PLY file"));
     Reader* r = vplArena_AllocZero(scratch, 1, sizeof *r);
     TRY(vplArena_Check(scratch));
     r->ply.text = *bytes;

@@ -184,7 +184,11 @@ static vplResult readRoot(vplSceneLoader* l)
 {
     static const char* const keys[] = {"camera", "cameras",     "materials", "!objects",
                                        "lights", "environment", NULL};
-    const vplJson root = vplJson_Root(&l->json);
+    const vplJson root = vplJson_Root(&l->json), asset = vplJson_Member(&root, "asset");
+    if (asset.value != NULL) {
+        return vplJson_Fail(&asset,
+                            "is a key of glTF files, whose names end in .gltf; expected a scene of libvpl");
+    }
     TRY(vplJson_CheckKeys(&root, keys));
     TRY(readCameras(l, &root));
     TRY(readMaterials(l, &root));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reads an STL file, text or binary, as one mesh. Its normals are left out: they say what the corners say.
 // Based on: 3D Systems, StereoLithography Interface Specification, 1988.
+#include "base/file_kind.h"
 #include "scene/model.h"
 
 #include <math.h>
@@ -90,6 +91,7 @@ vplResult vplReadStl(vplText* bytes, vplArena* scratch, int material, vplRawMesh
         return readBinary(&s, triangles);
     }
     if (!text) {
+        TRY(vplCheckFileKind(bytes->context, bytes->file, bytes->bytes, size, ".stl", "an STL file"));
         return vplFail(
             bytes->context, VPL_PARSE_ERROR,
             "%s: byte %d: found %zu bytes for %u triangles, expected an STL file, which has %d bytes "

@@ -143,6 +143,9 @@ refuses CompareDifferentSizes 2 "differ in size: 75x50 and 8x8" "$vpl" compare "
 
 "$vpl" render "$room" $base -o "$out/loud.pfm" --seed 1 -v >"$scratch/stdout" 2>"$scratch/stderr"
 check ResultsAloneGoToStdout test ! -s "$scratch/stdout" -a -s "$scratch/stderr"
+"$vpl" render "$room" --size 32x18 --method keller --particles 20 --passes 9 -o "$out/loud.hdr" -v 2>"$scratch/decided"
+check VerboseSaysWhatWasDecided grep -q '^vpl: --light-shadows [a-z]*: ' "$scratch/decided"
+check VerboseSaysNoLinePerPass test "$(grep -c '^vpl: shading' "$scratch/decided")" -eq 1
 check VerboseChangesNothing cmp "$out/loud.pfm" "$out/a.pfm"
 check NoTemporaryPictures test -z "$(ls -A "$out" | grep -v -E '\.(png|hdr|pfm|exr|json)$')"
 

@@ -62,6 +62,23 @@ for kind in ply stl gltf; do
 done
 refuses OtherModelsAreNamed 2 "room.fbx: .fbx files are not read" "$vpl" info room.fbx
 
+# What a file is, where its name says something else.
+kind() { # kind BYTES NAME FOUND
+    printf "$1" >"$scratch/$2"
+    refuses "FileOfAnotherKindIsNamed: $2 has $3" 2 "$2:1:1: found $3, expected " "$vpl" info "$scratch/$2"
+}
+kind 'glTF\002\000\000\000' kind.json "a binary glTF file"
+kind '\211PNG\r\n\032\n' kind.json "a PNG picture"
+kind '# a mesh\nv 0 0 0\n' kind.gltf "an OBJ model"
+kind 'ply\nformat ascii 1.0\n' kind.obj "a PLY model"
+kind '\n {"asset":{"version":"2.0"}}' kind.ply "a JSON file"
+kind '\037\213\010\000' kind.stl "a gzip archive"
+kind '<?xml version="1.0"?><COLLADA/>' kind.glb "an XML file"
+printf '{"asset":{"version":"2.0"}}' >"$scratch/kind.json"
+refuses GltfFileNamedJsonIsNamed 2 "asset is a key of glTF files, whose names end in .gltf" "$vpl" info "$scratch/kind.json"
+printf '{"camera":{}}' >"$scratch/kind.png"
+refuses SceneIsNoPicture 2 "kind.png:1:1: found a JSON file, expected a PNG picture" "$vpl" compare "$scratch/kind.png" "$scratch/kind.png"
+
 # One triangle in each format gives one picture.
 for file in ply/odd/crlf.ply ply/odd/cr-binary.ply stl/odd/solid-binary.stl stl/odd/upper-case-name.STL gltf/odd/binary.glb; do
     "$vpl" render "tests/data/$file" -o "$out/triangle.pfm" --size 32x24 --method direct --quiet

@@ -16,7 +16,7 @@ try:
 except ImportError:
     numpy = None
 
-VERSION = (0, 1)  # of the headers that the structures below repeat
+VERSION = (0, 2)  # of the headers that the structures below repeat
 _LAYERS = {"picture": 0, "direct": 1, "indirect": 2, "albedo": 4, "normal": 8, "depth": 16, "object": 32}
 _RESULTS = {1: KeyboardInterrupt, 2: MemoryError, 3: ValueError, 4: ValueError, 5: OSError, 6: ValueError}
 _LOG = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p)
@@ -41,11 +41,12 @@ class _Target(ctypes.Structure):
 
 def _find_library():
     here = os.path.dirname(os.path.abspath(__file__))
+    installed = os.path.join(here, "libvpl.so")  # by wheel.py
     built = os.path.join(here, "..", "..", "..", "build", "libvpl.so")
-    for path in (os.environ.get("VPL_LIBRARY"), built):
+    for path in (os.environ.get("VPL_LIBRARY"), installed, built):
         if path and os.path.exists(path):
             return path
-    return "libvpl.so.0.1"
+    return "libvpl.so.%d.%d" % VERSION
 
 
 def _load():

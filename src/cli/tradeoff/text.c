@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/tradeoff/text.h"
 
+#include <vpl/imagetools.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
