@@ -129,7 +129,8 @@ typedef struct vplShadeDef {
 
     // Direct light.
     const vplEmitterDef* emitters; // documented: point emitters only
-    const vplShadow* shadows; // one per emitter; rays where its map is NULL, and for directional emitters
+    // One per emitter; rays where its map is NULL, and for directional emitters. NULL: rays for all.
+    const vplShadow* shadows;
     // One per emitter: its shadow is taken from this reflective shadow map. NULL, also of an entry: from
     // `shadows`.
     const vplReflectiveMap* const* emitterMaps;

@@ -37,7 +37,6 @@ static vplResult openDirect(const vplGeometry* geometry, vplArena* arena, const 
 {
     const size_t points = (size_t)def->areaLightCount, emitters = (size_t)def->emitterCount;
     vplShadeLight* areaLights = vplArena_Alloc(arena, points, sizeof *areaLights);
-    vplShadow* shadows = vplArena_AllocZero(arena, emitters, sizeof *shadows);
     TRY(vplArena_Check(arena));
     for (size_t i = 0; i < points; i++) {
         areaLights[i] = def->areaLights[i];
@@ -46,7 +45,6 @@ static vplResult openDirect(const vplGeometry* geometry, vplArena* arena, const 
         areaLights[i].b *= (float)points;
     }
     gather->direct = (vplDirectLight){.emitters = def->emitters,
-                                      .shadows = shadows,
                                       .emitterCount = def->emitterCount,
                                       .weight = (float)emitters,
                                       .areaLights = areaLights,
@@ -117,7 +115,6 @@ static vplDirectLight drawDirect(const vplGather* gather, const vplLitPoint* p)
         const int e = (int)(u[2] * (float)one.emitterCount) % one.emitterCount;
         one.emitters += e;
         one.rays += e;
-        one.shadows += e;
         one.emitterCount = 1;
     }
     if (one.areaLightCount > 0) {

@@ -21,7 +21,7 @@ typedef struct vplEmitterRay {
 typedef struct vplDirectLight {
     const vplEmitterDef* emitters;
     const vplEmitterRay* rays; // one per emitter
-    const vplShadow* shadows;  // one per emitter
+    const vplShadow* shadows;  // one per emitter; NULL: rays
     const vplReflectiveMap* const*
         maps; // one per emitter or NULL, entries too: its shadow comes from this map
     int emitterCount;
@@ -60,7 +60,8 @@ static inline const vplReflectiveMap* vplDirectLight_Map(const vplDirectLight* d
 static inline bool vplDirectLight_CastsRays(const vplDirectLight* direct, int emitter)
 {
     return vplDirectLight_Map(direct, emitter) == NULL &&
-           (direct->rays[emitter].parallel || direct->shadows[emitter].map == NULL);
+           (direct->rays[emitter].parallel || direct->shadows == NULL ||
+            direct->shadows[emitter].map == NULL);
 }
 
 // 1 / distance^2, infinity for 0: a clamp distance as kernels read it.

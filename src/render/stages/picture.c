@@ -282,9 +282,7 @@ static vplResult shadePicture(const vplRun* run, Shading* s, vplImage* image)
     const vplEmitterMaps* maps = run->results[VPL_STAGE_EMITTER_MAPS];
     const bool many = plan->options.output.supersample > 1;
     const int lights = countLights(run);
-    s->shadows = maps != NULL
-                     ? maps->shadows
-                     : vplArena_AllocZero(run->scratch, (size_t)plan->emitterCount, sizeof(vplShadow));
+    s->shadows = maps != NULL ? maps->shadows : NULL; // rays
     s->sums = many ? vplArena_Alloc(run->scratch, vplValueCount(image), sizeof *s->sums) : NULL;
     TRY(vplArena_Check(run->scratch));
     return lights > 0 && plan->options.lights.shadows == VPL_LIGHT_SHADOWS_MAP
