@@ -115,6 +115,7 @@ static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* lig
                              .emitters = run->plan->emitters,
                              .emitterCount = emitterCount,
                              .emittersPerPoint = chosen,
+                             .emitterTrees = run->results[VPL_STAGE_EMITTER_TREES],
                              .areaLights = sky > 0 ? area->lights + (area->count - sky) : NULL,
                              .areaLightCount = sky};
     for (int first = 0; first < sideCount; first += CHUNK_SIDES) {

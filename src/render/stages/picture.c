@@ -139,6 +139,7 @@ static void addDirect(const vplRun* run, const vplShadow* shadows, vplShadeDef* 
     def->shadows = shadows;
     def->emitterCount = run->plan->emitterCount;
     def->emission = true;
+    def->trianglesPerPoint = run->plan->trianglesPerPoint;
     if (area != NULL) {
         def->areaLights = area->lights;
         def->areaLightCount = area->count;
@@ -181,6 +182,7 @@ static vplShadeDef describe(const vplRun* run)
                          .firstRow = run->firstRow,
                          .endRow = run->endRow,
                          .emittersPerPoint = run->plan->emittersPerPoint,
+                         .emitterTrees = run->results[VPL_STAGE_EMITTER_TREES],
                          .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL,
                          .progress = run->progress,
                          .progressUser = run->runner};
