@@ -134,11 +134,13 @@ typedef struct vplGeometry {
     // none.
     const int* formulaObjects;
     int formulaCount;
-    vplVec3 boundsMin, boundsMax;     // of all positions; both 0 when there are none
-    double origin[3];                 // vplScene_GetOrigin: all positions are relative to it
-    double area;                      // of all triangles, square metres
-    double meanReflectance;           // area-weighted, mean of the channels; 0 where there is no area
-    bool emits;                       // some triangle may emit
+    vplVec3 boundsMin, boundsMax;           // of all positions; both 0 when there are none
+    double origin[3];                       // vplScene_GetOrigin: all positions are relative to it
+    double area;                            // of all triangles, square metres
+    double meanReflectance;                 // area-weighted, mean of the channels; 0 where there is no area
+    bool emits;                             // some triangle may emit
+    int emittingTriangles, emittingObjects; // that may, and objects with such triangles
+    double emittingArea;                    // of these triangles, square metres
     const struct vplPaint* paint;     // textures and colours of vertices; NULL: surfaces have one colour each
     const struct vplCutOuts* cutOuts; // triangles that let light through; NULL: there are none
     vplEnvironment* environment;      // light from outside; NULL: there is none

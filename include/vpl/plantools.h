@@ -68,13 +68,15 @@ struct vplPlan {
     bool castsRays;       // some stage casts rays, so the geometry has a ray tree
     bool emitterRays;     // emitters are shadowed by rays, not by maps
     int emittersPerPoint; // that a tree chooses for each point, in direct light; 0: all light it
-    bool hasAreaLights;   // a material emits light
-    bool hasSky;          // the scene has an environment
-    bool hasCutOuts;      // materials let light through
-    bool showsDirect;     // the picture shows emission, and light from emitters and area lights
-    bool showsVirtual;    // the picture shows light from virtual lights
-    bool showsPatches;    // the picture shows patches
-    bool gathers;         // rays from pixels find the light of patches
+    int emittingTriangles;
+    int trianglesPerPoint; // that emit and that a tree chooses for each point, in direct light; 0: points stand for all
+    bool hasAreaLights; // a material emits light
+    bool hasSky;        // the scene has an environment
+    bool hasCutOuts;    // materials let light through
+    bool showsDirect;   // the picture shows emission, and light from emitters and area lights
+    bool showsVirtual;  // the picture shows light from virtual lights
+    bool showsPatches;  // the picture shows patches
+    bool gathers;       // rays from pixels find the light of patches
     bool
         splitsLight; // direct light is rendered a second time, alone, for layers of direct and indirect light
     bool compensates;   // short rays add the light that the clamp takes away

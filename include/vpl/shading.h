@@ -82,6 +82,7 @@ typedef struct vplCompensationDef {
     const vplShadeLight* areaLights;
     int areaLightCount;
     float areaLightMinDistance;
+    int trianglesPerPoint; // of the picture; 16 times fewer light a hit
     const vplShadeLight* lights;
     int lightCount;
     bool lightRays;   // the virtual lights cast shadows, by rays also where the picture uses maps
@@ -117,6 +118,7 @@ typedef struct vplGatherDef {
     const vplShadeLight* areaLights; // as in vplShadeDef
     int areaLightCount;
     float areaLightMinDistance;
+    int trianglesPerPoint; // > 0: one triangle that a tree chooses lights a near hit
 } vplGatherDef;
 
 typedef struct vplShadeDef {
@@ -129,7 +131,8 @@ typedef struct vplShadeDef {
 
     // Direct light.
     const vplEmitterDef* emitters; // documented: point emitters only
-    const vplShadow* shadows; // one per emitter; rays where its map is NULL, and for directional emitters
+    // One per emitter; rays where its map is NULL, and for directional emitters. NULL: rays for all.
+    const vplShadow* shadows;
     // One per emitter: its shadow is taken from this reflective shadow map. NULL, also of an entry: from
     // `shadows`.
     const vplReflectiveMap* const* emitterMaps;
@@ -137,6 +140,11 @@ typedef struct vplShadeDef {
     // Points and spots that light a point, with shadow rays, chosen from a tree by how much light they may send there; 0
     // (default), or not fewer than there are: all do. Physical only. The noise depends on a point's position alone.
     int emittersPerPoint;
+    // Triangles that emit, and light a point by a point on each, likewise; 0 (default): `areaLights` stand for them.
+    int trianglesPerPoint;
+    // The trees to choose from, of these emitters and those of `compensation` and `gather`, which are the same; NULL
+    // (default): they are made for this call.
+    const struct vplEmitterTrees* emitterTrees;
     const vplShadeLight* areaLights; // samples of area lights, with shadow rays; physical only
     int areaLightCount;
     float areaLightMinDistance; // their clamp distance, as minDistance

@@ -104,7 +104,7 @@ static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
     return VPL_SUCCESS;
 }
 
-// Finds bounds, area, mean reflectance and whether anything emits.
+// Finds bounds, area, mean reflectance and what emits.
 static void summarise(vplGeometry* g)
 {
     for (int i = 0; i < g->vertexCount; i++) {
@@ -115,13 +115,21 @@ static void summarise(vplGeometry* g)
     double reflecting = 0;
     g->area = 0;
     g->emits = false;
+    g->emittingArea = g->emittingTriangles = g->emittingObjects = 0;
+    int emitter = -1; // the last object that does
     for (int i = 0; i < g->triangleCount; i++) {
         const vplMaterialDef* material = &g->materials[g->triangleMaterials[i]];
         const vplRgb rho = vplGeometry_ReflectanceOf(g, i);
         const double area = vplGeometry_TriangleArea(g, i);
         g->area += area;
         reflecting += area * ((double)rho.r + (double)rho.g + (double)rho.b) / 3;
-        g->emits = g->emits || vplRgbMean(material->emission) > 0;
+        if (vplRgbMean(material->emission) > 0) {
+            g->emits = true;
+            g->emittingArea += area;
+            g->emittingTriangles++;
+            g->emittingObjects += g->owners[i] != emitter;
+            emitter = g->owners[i];
+        }
     }
     g->meanReflectance = g->area > 0 ? reflecting / g->area : 0;
 }

@@ -60,6 +60,7 @@ void vplRaster_Destroy(vplRaster* raster)
         vplFree(context, raster->commands);
         vplFree(context, raster->pipelines);
         vplFree(context, raster->shaded);
+        vplFree(context, raster->slots);
         vplFree(context, raster);
     }
 }
@@ -106,26 +107,11 @@ static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const
     return VPL_SUCCESS;
 }
 
-// Draws of one mesh with one vertex shader and uniforms share their vertex work. Scenes draw their objects
-// round and round, so the search starts behind the one found last. Returns -1 where there is none.
-static int findShaded(const vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline)
-{
-    const int last = raster->commandCount > 0 ? raster->commands[raster->commandCount - 1].shaded : -1;
-    for (int i = 0; i < raster->shadedCount; i++) {
-        const int at = (last + 1 + i) % raster->shadedCount;
-        const vplShaded* s = &raster->shaded[at];
-        if (s->key == mesh && s->vertexFcn == pipeline->vertex && s->uniforms == pipeline->vertexUniforms &&
-            s->varyingCount == pipeline->varyingCount && s->surfaceFcn == pipeline->surface) {
-            return at;
-        }
-    }
-    return -1;
-}
-
+// Draws of one mesh with one vertex shader and uniforms share their vertex work.
 static vplResult shareVertices(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline,
                                int* indexOut)
 {
-    *indexOut = findShaded(raster, mesh, pipeline);
+    *indexOut = vplRaster_FindShaded(raster, mesh, pipeline);
     if (*indexOut >= 0) {
         return VPL_SUCCESS;
     }
@@ -141,7 +127,9 @@ static vplResult shareVertices(vplRaster* raster, const vplMesh* mesh, const vpl
         .surfaceCount = pipeline->surface ? pipeline->surfaceCount : pipeline->varyingCount,
     };
     *indexOut = raster->shadedCount++;
-    return VPL_SUCCESS;
+    const vplResult result = vplRaster_IndexShaded(raster);
+    raster->shadedCount -= result != VPL_SUCCESS;
+    return result;
 }
 
 // Draws one after another often have the same pipeline.

@@ -101,6 +101,8 @@ struct vplRaster {
     vplShaded* shaded;
     int commandCount, pipelineCount, shadedCount;
     size_t commandCapacity, pipelineCapacity, shadedCapacity;
+    int* slots; // hash table of `shaded`: 1 + index; 0: empty
+    size_t slotCapacity;
 
     vplArena* run;        // owns the arrays below and those of `shaded` while a run lasts
     vplTriangleRef* refs; // in drawing order, with gaps between the chunks that made them
@@ -114,6 +116,12 @@ struct vplRaster {
     const void** passUniforms; // chain by chain
     vplRasterStats stats;
 };
+
+// The vertex work that the draw shares with others: an index of raster->shaded, -1 if there is none.
+int vplRaster_FindShaded(const vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline);
+
+// Lets the last of raster->shaded be found.
+vplResult vplRaster_IndexShaded(vplRaster* raster);
 
 // Vertex stage of one mesh: shading, projection, outcodes.
 vplResult vplShadeVertices(vplRaster* raster, vplShaded* shaded);

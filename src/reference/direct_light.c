@@ -122,7 +122,7 @@ static double probabilityOf(const vplPathScene* s, const vplPathVertex* vertex, 
 {
     const vplEmission* e = s->emission;
     const bool onTriangle = light->triangle >= 0;
-    const vplEmitterTree* tree = onTriangle ? s->triangleTree : s->emitterTree;
+    const vplEmitterTree* tree = onTriangle ? s->trees->triangles : s->trees->emitters;
     if (tree == NULL || (!onTriangle && (light->emitter < 0 ||
                                          e->emitters[light->emitter].type == VPL_EMITTER_DIRECTIONAL))) {
         return 1;
@@ -177,7 +177,7 @@ static Connection connect(const vplPathScene* s, const vplPathVertex* vertex, co
         // The density of the point, per square metre, and the share of all particles that start on triangles.
         double density = VPL_PI * vplRgbMean(radiance) / s->trianglePower,
                share = s->trianglePower / s->power;
-        if (s->triangleTree != NULL) {
+        if (s->trees->triangles != NULL) {
             share = VPL_PI * vplRgbMean(radiance) / s->power;
             density = probability / vplGeometry_TriangleArea(g, light->triangle);
             share /= density;
@@ -238,8 +238,8 @@ static void addTriangle(vplPathState* path, const vplPathVertex* v, double choic
 {
     const vplPathScene* s = path->scene;
     vplChosenSource chosen = {.probability = 1};
-    if (s->triangleTree != NULL) {
-        chosen = vplEmitterTree_Choose(s->triangleTree, v->hit.position, v->shading, choice);
+    if (s->trees->triangles != NULL) {
+        chosen = vplEmitterTree_Choose(s->trees->triangles, v->hit.position, v->shading, choice);
     } else {
         chosen.source = vplEmission_Choose(s->emission, s->emission->firstTriangle, choice, &chosen.rest);
     }
@@ -297,12 +297,12 @@ static void offer(const vplPathScene* s, const vplPathVertex* v, int emitter, do
 // Offers directional emitters, and points and spots that the tree chooses by numbers spread evenly from `choice` on.
 static void offerFromTree(const vplPathScene* s, const vplPathVertex* v, double choice, Reservoir* r)
 {
-    for (int i = 0; i < s->directionalCount; i++) {
-        offer(s, v, s->directional[i], 1, r);
+    for (int i = 0; i < s->trees->directionalCount; i++) {
+        offer(s, v, s->trees->directional[i], 1, r);
     }
     for (int i = 0; i < TREE_OFFERS; i++) {
-        const vplChosenSource c =
-            vplEmitterTree_Choose(s->emitterTree, v->hit.position, v->shading, (i + choice) / TREE_OFFERS);
+        const vplChosenSource c = vplEmitterTree_Choose(s->trees->emitters, v->hit.position, v->shading,
+                                                        (i + choice) / TREE_OFFERS);
         if (c.source >= 0) {
             offer(s, v, s->emission->sources[c.source].emitter, TREE_OFFERS * c.probability, r);
         }
@@ -313,11 +313,11 @@ static void offerFromTree(const vplPathScene* s, const vplPathVertex* v, double 
 static void addEmitter(vplPathState* path, const vplPathVertex* v, const float u[4], vplRadiance* sum)
 {
     const vplPathScene* s = path->scene;
-    Reservoir r = {.choice = (double)u[s->emitterTree != NULL ? 1 : 0], .power = 1, .emitter = -1};
-    if (s->emitterTree != NULL) {
+    Reservoir r = {.choice = (double)u[s->trees->emitters != NULL ? 1 : 0], .power = 1, .emitter = -1};
+    if (s->trees->emitters != NULL) {
         offerFromTree(s, v, refine(u[0], u[3]), &r);
     }
-    for (int i = 0; i < s->emission->emitterCount && s->emitterTree == NULL; i++) {
+    for (int i = 0; i < s->emission->emitterCount && s->trees->emitters == NULL; i++) {
         offer(s, v, i, 1, &r);
     }
     if (r.emitter >= 0 && isEmitterVisible(path, v, &s->emission->emitters[r.emitter], &r.chosen)) {
@@ -342,15 +342,15 @@ vplRadiance vplSampleDirect(vplPathState* path, const vplPathVertex* vertex, con
     vplRadiance sum = {0, 0, 0};
     float more[4] = {0};
     const bool sky = path->scene->geometry->environment != NULL;
-    if (emitters > 1 || sky || path->scene->triangleTree != NULL) {
+    if (emitters > 1 || sky || path->scene->trees->triangles != NULL) {
         vplPath_Draw(path, set, more);
     }
     if (emitters > 0) {
         addEmitter(path, vertex, more, &sum);
     }
     if (path->scene->trianglePower > 0) {
-        addTriangle(path, vertex, path->scene->triangleTree != NULL ? refine(u[0], more[2]) : (double)u[0],
-                    u[1], &sum);
+        addTriangle(path, vertex,
+                    path->scene->trees->triangles != NULL ? refine(u[0], more[2]) : (double)u[0], u[1], &sum);
     }
     if (sky) {
         addSky(path, vertex, more + 2, &sum);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "reference/path_scene.h"
-#include "base/arena.h"
 #include "base/rng.h"
 #include "math/scalar.h"
 #include "math/vec.h"
@@ -16,40 +15,24 @@ vplPathDef vplDefaultPathDef(void)
                         .trianglesOfTree = VPL_PATH_TRIANGLES_OF_TREE};
 }
 
-static vplResult listDirectional(vplPathScene* s)
-{
-    const vplEmission* e = s->emission;
-    s->directional = vplArena_Alloc(s->arena, (size_t)e->emitterCount, sizeof *s->directional);
-    TRY(vplArena_Check(s->arena));
-    for (int i = 0; i < e->emitterCount; i++) {
-        if (e->emitters[i].type == VPL_EMITTER_DIRECTIONAL) {
-            s->directional[s->directionalCount++] = i;
-        }
-    }
-    return VPL_SUCCESS;
-}
-
-static vplResult makeTrees(vplPathScene* s)
-{
-    const vplEmission* e = s->emission;
-    const int emitters = e->environment >= 0 ? e->environment : e->firstTriangle;
-    const int triangles = e->sourceCount - e->firstTriangle;
-    s->arena = vplArena_Create(e->context);
-    if (emitters >= s->def.emittersOfTree) {
-        TRY(vplEmitterTree_Create(s->arena, e, 0, emitters, &s->emitterTree));
-        TRY(s->emitterTree != NULL ? listDirectional(s) : VPL_SUCCESS);
-    }
-    return triangles >= s->def.trianglesOfTree
-               ? vplEmitterTree_Create(s->arena, e, e->firstTriangle, e->sourceCount, &s->triangleTree)
-               : vplArena_Check(s->arena);
-}
-
 void vplPathScene_Free(vplPathScene* s)
 {
-    vplArena_Destroy(s->arena);
-    vplEmission_Destroy(s->emission);
+    vplEmitterTrees_Destroy(s->ownTrees);
+    s->ownTrees = NULL;
+    s->trees = NULL;
     s->emission = NULL;
-    s->arena = NULL;
+}
+
+static vplResult findTrees(vplPathScene* s)
+{
+    s->trees = s->def.trees;
+    if (s->trees == NULL) {
+        const vplTreesWanted wanted = {s->def.emittersOfTree, s->def.trianglesOfTree};
+        TRY(vplEmitterTrees_Create(s->geometry, s->def.emitters, s->def.emitterCount, wanted, &s->ownTrees));
+        s->trees = s->ownTrees;
+    }
+    s->emission = s->trees->emission;
+    return VPL_SUCCESS;
 }
 
 vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const vplPathDef* def)
@@ -64,18 +47,14 @@ vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const 
     s->scaleY = sine / cosine;
     s->pixelWidth = (float)(2 * s->scaleY / def->height);
     s->scaleX = s->scaleY * def->width / def->height;
-    TRY(vplEmission_Create(geometry, def->emitters, def->emitterCount, &s->emission));
+    TRY(findTrees(s));
     s->power = vplEmission_Power(s->emission);
     if (s->emission->environment >= 0) {
         const double* sums = s->emission->cumulative + s->emission->environment;
         s->skyShare = (sums[1] - sums[0]) / s->power / (VPL_PI * s->emission->radius * s->emission->radius);
     }
     s->trianglePower = s->power - s->emission->cumulative[s->emission->firstTriangle];
-    const vplResult result = makeTrees(s);
-    if (result != VPL_SUCCESS) {
-        vplPathScene_Free(s);
-    }
-    return result;
+    return VPL_SUCCESS;
 }
 
 void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4])

@@ -5,7 +5,7 @@
 
 #include <vpl/geometry.h>
 
-#include "geometry/emitter_tree.h"
+#include "geometry/emitter_trees.h"
 #include "geometry/paint.h"
 #include "math/sobol.h"
 
@@ -43,18 +43,17 @@ typedef struct vplPathDef {
     // Vertices choose from trees of at least so many emitters, and of so many triangles that emit; default
     // VPL_PATH_EMITTERS_OF_TREE and VPL_PATH_TRIANGLES_OF_TREE.
     int emittersOfTree, trianglesOfTree;
+    const vplEmitterTrees* trees; // of these emitters, with trees as above; NULL (default): they are made
 } vplPathDef;
 
 vplPathDef vplDefaultPathDef(void);
 
 typedef struct vplPathScene {
     const vplGeometry* geometry;
-    vplEmission* emission;        // owned
-    vplArena* arena;              // of the trees; owned
-    vplEmitterTree* emitterTree;  // of points and spots; NULL: a vertex asks each
-    vplEmitterTree* triangleTree; // of triangles that emit; NULL: they are chosen by power
-    int* directional;             // indices of directional emitters, where there is a tree of the others
-    int directionalCount;
+    const vplEmission* emission;
+    const vplEmitterTrees*
+        trees; // without one of emitters a vertex asks each, without one of triangles it chooses by power
+    vplEmitterTrees* ownTrees; // NULL: the def's
     vplPathDef def;
     vplSobol sobol;
     float pixelWidth;            // at a depth of one metre, metres

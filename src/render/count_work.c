@@ -102,8 +102,10 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
     const vplRenderOptions* o = &s->plan->options;
     const bool area = s->lamps && o->method != VPL_METHOD_KELLER;
     const bool sky = s->plan->hasSky && o->method != VPL_METHOD_KELLER;
-    const double rays = (s->plan->emitterRays ? s->emitters : 0) + (area ? o->lights.areaLightSamples : 0) +
-                        (sky ? o->lights.skySamples : 0);
+    const double rays =
+        (s->plan->emitterRays ? s->emitters : 0) +
+        (area ? o->lights.areaLightSamples * (s->plan->trianglesPerPoint > 0 ? CHOICE_WORK : 1) : 0) +
+        (sky ? o->lights.skySamples : 0);
     if (s->plan->showsDirect) {
         // Emitters are mostly in front of what is seen, also where surfaces do not face each other.
         w->counts[SHADOW_RAY] += pixels * rays * fmax(0.24, 0.6 * s->probe.facing) * s->depth;

@@ -198,9 +198,7 @@ static Bytes picture(const Scale* s)
     // What is behind all surfaces is a picture of its own, when the memory of interleaved shading is free again.
     scratch += s->plan->hasSky && s->plan->showsDirect && !vplPixelsShareLight(s->plan) ? 12 * s->pixels : 0;
     scratch += s->plan->showsVirtual ? lightScratch(s) : 0;
-    // Emitters as kernels read them, and while their tree is made.
-    scratch +=
-        s->plan->emittersPerPoint > 0 ? 500.0 * s->plan->emitterCount * (s->plan->compensates ? 2 : 1) : 0;
+    scratch += 48.0 * s->plan->emitterCount * (s->plan->compensates ? 2 : 1); // emitters as kernels read them
     scratch += s->plan->gathers ? 12 * s->sides + 4.0 * s->plan->patches : 0; // what rays meet
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
@@ -209,6 +207,17 @@ static Bytes picture(const Scale* s)
 static bool isUndone(const vplPlan* p)
 {
     return p->options.progress != NULL && vplCountPathPasses(p) > 1;
+}
+
+// Sources, and the trees of those that are many (emitter_tree.h).
+static Bytes emitterTrees(const vplPlan* p)
+{
+    const vplTreesWanted wanted = vplTreesOf(p);
+    const double emitters = p->sceneEmitterCount, triangles = p->emittingTriangles;
+    const double chosen =
+        (emitters >= wanted.emitters ? emitters : 0) + (triangles >= wanted.triangles ? triangles : 0);
+    return (Bytes){sizeof(vplEmitterDef) * emitters + 32 * (emitters + triangles) + 120 * chosen,
+                   120 * chosen};
 }
 
 static Bytes estimate(const Scale* s, vplStageId id)
@@ -222,6 +231,8 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_EMITTER_MAPS:
         return (Bytes){vplEmitterMapBytes(p) + p->emitterCount * (double)sizeof(vplShadow),
                        2e5 + RASTER_CUBE * s->triangles};
+    case VPL_STAGE_EMITTER_TREES:
+        return emitterTrees(p);
     case VPL_STAGE_AREA_LIGHTS:
         return (Bytes){(o->lights.areaLightSamples + (p->hasSky ? o->lights.skySamples : 0)) *
                            (double)sizeof(vplShadeLight),

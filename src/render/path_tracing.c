@@ -2,4 +2,5 @@
 // The truth that the other methods are judged against: paths from the camera, without bias.
 #include "render/stage.h"
 
-const vplStageId VPL_PATH_RECIPE[] = {VPL_STAGE_GEOMETRY, VPL_STAGE_PATHS, VPL_STAGE_COUNT};
+const vplStageId VPL_PATH_RECIPE[] = {VPL_STAGE_GEOMETRY, VPL_STAGE_EMITTER_TREES, VPL_STAGE_PATHS,
+                                      VPL_STAGE_COUNT};

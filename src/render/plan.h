@@ -3,6 +3,7 @@
 #ifndef VPL_RENDER_PLAN_H
 #define VPL_RENDER_PLAN_H
 
+#include "geometry/emitter_trees.h"
 #include "render/runner.h"
 
 // Plans with a runner, which keeps the results of stages that decisions needed; the plan's render finds them
@@ -60,6 +61,9 @@ vplResult vplForetellClusters(vplRunner* r, const vplPlan* p);
 
 // Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.
 vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
+
+// The least numbers of emitters and of triangles that emit from which points choose by a tree.
+vplTreesWanted vplTreesOf(const vplPlan* plan);
 
 // Fills in counts and bytes: measured for stages that ran already, estimated for the others.
 vplResult vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);

@@ -63,13 +63,38 @@ static bool needsEmitterMaps(const vplPlan* p, char* why)
                                      casting, casting > 1 ? "s" : "", p->options.shadow.mapSize);
 }
 
+static bool needsEmitterTrees(const vplPlan* p, char* why)
+{
+    const vplTreesWanted wanted = vplTreesOf(p);
+    const bool asks = p->options.method == VPL_METHOD_PATH || p->showsDirect || p->compensates ||
+                      p->gathers || p->showsPatches;
+    if (!asks) {
+        return because(why, false, "%s", NOT_DIRECT);
+    }
+    const bool emitters = p->sceneEmitterCount >= wanted.emitters,
+               triangles = p->emittingTriangles >= wanted.triangles;
+    if (!emitters && !triangles) {
+        return because(why, false, "there are few lights to choose from");
+    }
+    char lamps[64] = "", surfaces[64] = "";
+    if (emitters) {
+        snprintf(lamps, sizeof lamps, "%d lights", p->emitterCount);
+    }
+    if (triangles) {
+        snprintf(surfaces, sizeof surfaces, "%s%d triangles that emit", emitters ? " and " : "",
+                 p->emittingTriangles);
+    }
+    return because(why, true, "points choose among %s%s", lamps, surfaces);
+}
+
 static bool needsAreaLights(const vplPlan* p, char* why)
 {
     const bool documented = p->options.lighting == VPL_LIGHTING_DOCUMENTED;
     const bool patches = p->hasSky && p->showsPatches; // which the environment lights
     const char* problem = !p->showsDirect && !p->compensates && !p->gathers && !patches ? NOT_DIRECT
                           : !p->hasAreaLights && !p->hasSky                             ? "no material emits"
-                          : documented ? "documented lighting has no area lights"
+                          : documented                             ? "documented lighting has no area lights"
+                          : p->trianglesPerPoint > 0 && !p->hasSky ? "points choose among them by a tree"
                           : p->options.method == VPL_METHOD_KELLER
                               ? p->hasSky ? "virtual lights stand for area lights and the environment, too"
                                           : "virtual lights stand for area lights, too"
@@ -77,11 +102,12 @@ static bool needsAreaLights(const vplPlan* p, char* why)
     if (problem != NULL) {
         return because(why, false, "%s", problem);
     }
-    return !p->hasSky ? because(why, true, "%d points stand for all area lights in direct light",
-                                p->options.lights.areaLightSamples)
-                      : because(why, true, "%d directions stand for the environment in direct light%s",
-                                p->options.lights.skySamples,
-                                p->hasAreaLights ? ", and points for area lights" : "");
+    return !p->hasSky
+               ? because(why, true, "%d points stand for all area lights in direct light",
+                         p->options.lights.areaLightSamples)
+               : because(why, true, "%d directions stand for the environment in direct light%s",
+                         p->options.lights.skySamples,
+                         p->hasAreaLights && p->trianglesPerPoint == 0 ? ", and points for area lights" : "");
 }
 
 static bool needsReflectiveMaps(const vplPlan* p, char* why)
@@ -246,6 +272,9 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
     [VPL_STAGE_EMITTER_MAPS] = {
         "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size supersample",
         needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps, .report = NULL},
+    [VPL_STAGE_EMITTER_TREES] = {
+        "emitter tree", 0.15, IN(GEOMETRY), "EMITTERS emitter-samples method lighting area-light-samples",
+        needsEmitterTrees, vplMakeEmitterTrees, vplDestroyEmitterTrees, .report = NULL},
     [VPL_STAGE_AREA_LIGHTS] = {
         "area lights", 0.15, IN(GEOMETRY), "area-light-samples sky-samples",
         needsAreaLights, vplMakeAreaLights, NULL, .report = NULL},
@@ -300,7 +329,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), FACTOR_KEY,
         needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
     [VPL_STAGE_PATCH_LIGHT] = {
-        "patch light", 0.65, IN(GEOMETRY) | IN(AREA_LIGHTS) | IN(PATCHES) | IN(SIDES), "patch-light seed gather EMITTERS",
+        "patch light", 0.65, IN(GEOMETRY) | IN(EMITTER_TREES) | IN(AREA_LIGHTS) | IN(PATCHES) | IN(SIDES), "patch-light seed gather EMITTERS",
         needsPatchLight, vplMakePatchLight, NULL, .report = NULL},
     [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
@@ -309,12 +338,12 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather GROUPS",
         needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
-        "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
+        "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(EMITTER_TREES) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
             IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(PATCH_LIGHT) | IN(SOLUTION) |
             IN(VERTEX_LIGHT), "ALWAYS",
         needsPicture, vplMakePicture, vplDestroyImage, .report = NULL},
     [VPL_STAGE_PATHS] = {
-        "paths", 1, IN(GEOMETRY), "ALWAYS",
+        "paths", 1, IN(GEOMETRY) | IN(EMITTER_TREES), "ALWAYS",
         needsPaths, vplMakePaths, vplDestroyPaths, .continues = true, .undoes = true},
 };
 // clang-format on

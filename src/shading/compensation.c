@@ -250,6 +250,7 @@ vplResult vplCompensator_Open(vplShading* shading)
                                     .shadows = def->shadows,
                                     .emitterCount = def->emitterCount,
                                     .perPoint = (shade->emittersPerPoint + PER_HIT - 1) / PER_HIT,
+                                    .trianglesPerPoint = (def->trianglesPerPoint + PER_HIT - 1) / PER_HIT,
                                     .weight = 1,
                                     .areaLights = def->areaLights,
                                     .areaLightCount = def->areaLightCount,
@@ -259,6 +260,5 @@ vplResult vplCompensator_Open(vplShading* shading)
                          .areaLightDistance = areaLightDistance,
                          .areaLightInverseClamp = vplInverseSquare(areaLightDistance)};
     shading->compensation = compensator;
-    return vplDirectLight_Open(&compensator->direct, shading->geometry, shading->arena,
-                               VPL_LIGHTING_PHYSICAL);
+    return vplDirectLight_Open(&compensator->direct, shading, VPL_LIGHTING_PHYSICAL);
 }

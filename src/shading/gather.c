@@ -31,13 +31,13 @@ static bool sharesLight(const vplShadeDef* def)
     return def->accumulation == VPL_ACCUMULATE_INTERLEAVED && def->interleave > 1;
 }
 
-// Each hit is lit by one area light's point and one emitter, as if all were like it.
-static vplResult openDirect(const vplGeometry* geometry, vplArena* arena, const vplGatherDef* def,
-                            vplGather* gather)
+// Each hit is lit by one area light's point and one emitter, as if all were like it, or by one of many that a tree chooses.
+static vplResult openDirect(const vplShading* shading, const vplGatherDef* def, vplGather* gather)
 {
+    vplArena* arena = shading->arena;
+    const bool tree = shading->def->emittersPerPoint > 0;
     const size_t points = (size_t)def->areaLightCount, emitters = (size_t)def->emitterCount;
     vplShadeLight* areaLights = vplArena_Alloc(arena, points, sizeof *areaLights);
-    vplShadow* shadows = vplArena_AllocZero(arena, emitters, sizeof *shadows);
     TRY(vplArena_Check(arena));
     for (size_t i = 0; i < points; i++) {
         areaLights[i] = def->areaLights[i];
@@ -46,13 +46,14 @@ static vplResult openDirect(const vplGeometry* geometry, vplArena* arena, const 
         areaLights[i].b *= (float)points;
     }
     gather->direct = (vplDirectLight){.emitters = def->emitters,
-                                      .shadows = shadows,
                                       .emitterCount = def->emitterCount,
-                                      .weight = (float)emitters,
+                                      .perPoint = tree ? 1 : 0,
+                                      .trianglesPerPoint = def->trianglesPerPoint > 0 ? 1 : 0,
+                                      .weight = tree ? 1 : (float)emitters,
                                       .areaLights = areaLights,
                                       .areaLightCount = def->areaLightCount,
                                       .areaLightInverseClamp = vplInverseSquare(def->areaLightMinDistance)};
-    return vplDirectLight_Open(&gather->direct, geometry, arena, VPL_LIGHTING_PHYSICAL);
+    return vplDirectLight_Open(&gather->direct, shading, VPL_LIGHTING_PHYSICAL);
 }
 
 vplResult vplGather_Open(vplShading* shading)
@@ -67,7 +68,7 @@ vplResult vplGather_Open(vplShading* shading)
     gather->sobol = vplSobol_Make();
     gather->side = sharesLight(def) ? def->interleave : 1;
     shading->gather = gather;
-    return openDirect(shading->geometry, shading->arena, def->gather, gather);
+    return openDirect(shading, def->gather, gather);
 }
 
 // ---- one step of all walks
@@ -113,11 +114,10 @@ static vplDirectLight drawDirect(const vplGather* gather, const vplLitPoint* p)
     vplDirectLight one = gather->direct;
     float u[VPL_SOBOL_DIMENSIONS];
     vplSobol_Sample(&gather->sobol, gather->def->seed, p->pixel, p->bounce, p->ray, u);
-    if (one.emitterCount > 0) {
+    if (one.emitterCount > 0 && one.tree == NULL) {
         const int e = (int)(u[2] * (float)one.emitterCount) % one.emitterCount;
         one.emitters += e;
         one.rays += e;
-        one.shadows += e;
         one.emitterCount = 1;
     }
     if (one.areaLightCount > 0) {

@@ -162,6 +162,9 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const Shad
 void vplAddAreaLights(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
                       float irradiance[3][VPL_LANES], int64_t* rays)
 {
+    if (direct->triangleTree != NULL) {
+        vplAddChosenTriangles(shading, direct, points, irradiance, rays);
+    }
     for (int first = 0; first < direct->areaLightCount; first += VPL_LIGHT_GROUP) {
         const int left = direct->areaLightCount - first;
         const ShadowedLights group = {direct->areaLights + first, NULL,

@@ -107,8 +107,8 @@ vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, co
         return vplFail(context, VPL_INVALID_ARGUMENT, "a background needs an environment");
     }
     if (def->output == VPL_OUTPUT_SHADOW_FACTOR &&
-        (def->emitterCount < 1 ||
-         ((def->emitterMaps == NULL || def->emitterMaps[0] == NULL) && def->shadows[0].map == NULL))) {
+        (def->emitterCount < 1 || ((def->emitterMaps == NULL || def->emitterMaps[0] == NULL) &&
+                                   (def->shadows == NULL || def->shadows[0].map == NULL)))) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter with a shadow map");
     }
     return checkAccumulation(context, def);

@@ -60,7 +60,7 @@ vplResult vplShadePoints(const vplGeometry* geometry, const vplShadeDef* def, co
                        .irradiance = irradianceOut};
     task.shading.smooth = false; // points have one normal each
     task.shading.arena = vplArena_Create(geometry->context);
-    vplResult result = vplDirectLight_Open(&task.shading.direct, geometry, task.shading.arena, def->lighting);
+    vplResult result = vplDirectLight_Open(&task.shading.direct, &task.shading, def->lighting);
     if (result == VPL_SUCCESS) {
         result = vplParallelForAsking(geometry->context, (count + TASK_POINTS - 1) / TASK_POINTS, lightPoints,
                                       &task);

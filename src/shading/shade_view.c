@@ -26,6 +26,7 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
                    .maps = def->emitterMaps,
                    .emitterCount = def->emitterCount,
                    .perPoint = documented ? 0 : def->emittersPerPoint,
+                   .trianglesPerPoint = documented ? 0 : def->trianglesPerPoint,
                    .weight = documented && def->particleCount > 0 ? 1 / (float)def->particleCount : 1,
                    .areaLights = def->areaLights,
                    .areaLightCount = def->areaLightCount,
@@ -59,34 +60,32 @@ static vplResult makeObjects(vplShading* s)
     return VPL_SUCCESS;
 }
 
-static vplResult makeTree(vplDirectLight* direct, const vplGeometry* geometry, vplArena* arena)
+static vplResult findTrees(vplDirectLight* direct, const vplShading* s)
 {
-    vplEmission* emission;
-    vplEmitterTree* tree = NULL;
-    TRY(vplEmission_Create(geometry, direct->emitters, direct->emitterCount, &emission));
-    const int count = emission->environment >= 0 ? emission->environment : emission->firstTriangle;
-    int* emitterOf = vplArena_Alloc(arena, (size_t)count, sizeof *emitterOf);
-    vplResult result = vplArena_Check(arena);
-    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
-        emitterOf[i] = emission->sources[i].emitter;
+    const bool emitters = direct->perPoint > 0 && direct->perPoint < direct->emitterCount;
+    const bool triangles = direct->trianglesPerPoint > 0;
+    const vplTreesWanted wanted = {emitters ? 1 : INT32_MAX, triangles ? 1 : INT32_MAX};
+    if (!emitters && !triangles) {
+        return VPL_SUCCESS;
     }
-    if (result == VPL_SUCCESS) {
-        result = vplEmitterTree_Create(arena, emission, 0, count, &tree);
+    direct->trees = s->def->emitterTrees;
+    if (direct->trees == NULL) {
+        vplEmitterTrees* own;
+        TRY(vplEmitterTrees_Create(s->geometry, direct->emitters, direct->emitterCount, wanted, &own));
+        vplArena_Absorb(s->arena, own->arena);
+        direct->trees = own;
     }
-    while (direct->firstParallel < direct->emitterCount && !direct->rays[direct->firstParallel].parallel) {
-        direct->firstParallel++;
-    }
-    direct->tree = tree;
-    direct->emitterOf = emitterOf;
-    vplEmission_Destroy(emission);
-    return result;
+    direct->tree = emitters ? direct->trees->emitters : NULL;
+    direct->triangleTree = triangles ? direct->trees->triangles : NULL;
+    direct->firstParallel =
+        direct->trees->directionalCount > 0 ? direct->trees->directional[0] : direct->emitterCount;
+    return VPL_SUCCESS;
 }
 
-vplResult vplDirectLight_Open(vplDirectLight* direct, const vplGeometry* geometry, vplArena* arena,
-                              vplLighting lighting)
+vplResult vplDirectLight_Open(vplDirectLight* direct, const vplShading* s, vplLighting lighting)
 {
-    vplEmitterRay* rays = vplArena_Alloc(arena, (size_t)direct->emitterCount, sizeof *rays);
-    TRY(vplArena_Check(arena));
+    vplEmitterRay* rays = vplArena_Alloc(s->arena, (size_t)direct->emitterCount, sizeof *rays);
+    TRY(vplArena_Check(s->arena));
     for (int i = 0; i < direct->emitterCount; i++) {
         const vplEmitterDef* e = &direct->emitters[i];
         double sine, inner, outer;
@@ -101,8 +100,7 @@ vplResult vplDirectLight_Open(vplDirectLight* direct, const vplGeometry* geometr
                                   .falloff = lighting == VPL_LIGHTING_PHYSICAL};
     }
     direct->rays = rays;
-    return direct->perPoint > 0 && direct->perPoint < direct->emitterCount ? makeTree(direct, geometry, arena)
-                                                                           : VPL_SUCCESS;
+    return findTrees(direct, s);
 }
 
 vplResult vplMakeColumns(vplShading* s)
@@ -172,7 +170,7 @@ static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats
     framebuffer.firstRow = s->firstRow;
     framebuffer.endRow = s->endRow;
     TRY(makeObjects(s));
-    TRY(vplDirectLight_Open(&s->direct, s->geometry, s->arena, s->def->lighting));
+    TRY(vplDirectLight_Open(&s->direct, s, s->def->lighting));
     TRY(vplCompensator_Open(s));
     TRY(vplGather_Open(s));
     TRY(strategy->open(s, &framebuffer));

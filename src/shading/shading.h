@@ -4,7 +4,7 @@
 #define VPL_SHADING_SHADING_H
 
 #include "base/arena.h"
-#include "geometry/emitter_tree.h"
+#include "geometry/emitter_trees.h"
 #include "shading/kernels.h"
 
 // ---- light
@@ -21,14 +21,16 @@ typedef struct vplEmitterRay {
 typedef struct vplDirectLight {
     const vplEmitterDef* emitters;
     const vplEmitterRay* rays; // one per emitter
-    const vplShadow* shadows;  // one per emitter
+    const vplShadow* shadows;  // one per emitter; NULL: rays
     const vplReflectiveMap* const*
         maps; // one per emitter or NULL, entries too: its shadow comes from this map
     int emitterCount;
     float weight;               // factor of all emitters: documented 1/N, else 1
     int perPoint;               // points and spots that light a point, chosen from the tree; 0: all do
     const vplEmitterTree* tree; // of points and spots; NULL: all emitters light a point
-    const int* emitterOf;       // by source of the tree
+    int trianglesPerPoint;      // that emit, likewise
+    const vplEmitterTree* triangleTree; // NULL: area lights stand for all of them
+    const vplEmitterTrees* trees;       // that hold these trees, and the sources that they choose
     int firstParallel; // directional emitter, which the tree does not hold; emitterCount: there is none
     const vplShadeLight* areaLights;
     int areaLightCount;
@@ -46,9 +48,11 @@ typedef struct vplLightList {
     float* columns[6];      // px .. nz, for culling; NULL: none is culled
 } vplLightList;
 
-// Makes the emitter rays in the arena, and the tree where fewer emitters light a point than there are.
-vplResult vplDirectLight_Open(vplDirectLight* direct, const vplGeometry* geometry, vplArena* arena,
-                              vplLighting lighting);
+struct vplShading;
+
+// Makes the emitter rays in the shading's arena, and where points choose emitters or triangles, finds the trees: those of
+// the def, or new ones.
+vplResult vplDirectLight_Open(vplDirectLight* direct, const struct vplShading* shading, vplLighting lighting);
 
 // The map that an emitter's shadow is taken from, or NULL.
 static inline const vplReflectiveMap* vplDirectLight_Map(const vplDirectLight* direct, int emitter)
@@ -60,7 +64,8 @@ static inline const vplReflectiveMap* vplDirectLight_Map(const vplDirectLight* d
 static inline bool vplDirectLight_CastsRays(const vplDirectLight* direct, int emitter)
 {
     return vplDirectLight_Map(direct, emitter) == NULL &&
-           (direct->rays[emitter].parallel || direct->shadows[emitter].map == NULL);
+           (direct->rays[emitter].parallel || direct->shadows == NULL ||
+            direct->shadows[emitter].map == NULL);
 }
 
 // 1 / distance^2, infinity for 0: a clamp distance as kernels read it.
@@ -246,9 +251,12 @@ bool vplReceiveLight(const vplReceiver* receiver, const vplShadeLight* light, co
 void vplCastShadowRays(const vplReceiver* receiver, const vplVec3 way[VPL_LANES], bool parallel,
                        float amount[VPL_LANES]);
 
-// Adds the irradiance of points and spots that the tree chooses, with shadows, and counts the rays it casts.
+// Adds the irradiance of points and spots, or of triangles that emit, that a tree chooses, with shadows, and counts the
+// rays it casts.
 void vplAddChosenEmitters(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
                           float irradiance[3][VPL_LANES], int64_t* rays);
+void vplAddChosenTriangles(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
+                           float irradiance[3][VPL_LANES], int64_t* rays);
 
 // Sets amount to 0 where something is between a point and an emitter. Lanes of amount 0 cast no ray. The receiver must
 // have starts.
@@ -258,7 +266,7 @@ void vplCastEmitterRays(const vplReceiver* receiver, const vplEmitterRay* emitte
 void vplDirectIrradiance(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
                          float irradiance[3][VPL_LANES], int64_t* rays);
 
-// Adds the irradiance of area lights, with shadows.
+// Adds the irradiance of area lights, and of triangles that emit and that a tree chooses, with shadows.
 void vplAddAreaLights(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
                       float irradiance[3][VPL_LANES], int64_t* rays);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What --method auto stands for: a method, and those of its options that are as in vplDefaultRenderOptions.
 #include "geometry/bvh.h"
-#include "geometry/triangle.h"
 #include "render/options.h"
 #include "render/planner/look.h"
 #include "render/planner/planner.h"
@@ -76,14 +75,7 @@ static const double MOST_LAMPS = 0.1;
 static bool hasLamps(const vplRunner* r)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    double lamps = 0, all = 0;
-    for (int i = 0; i < g->triangleCount; i++) {
-        const vplRgb e = g->materials[g->triangleMaterials[i]].emission;
-        const double area = vplGeometry_TriangleArea(g, i);
-        lamps += e.r + e.g + e.b > 0 ? area : 0;
-        all += area;
-    }
-    return lamps > 0 && lamps < MOST_LAMPS * all &&
+    return g->emittingArea > 0 && g->emittingArea < MOST_LAMPS * g->area &&
            vplScene_GetEnvironment(r->run.scene)->type == VPL_ENVIRONMENT_NONE;
 }
 

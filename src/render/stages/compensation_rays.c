@@ -51,12 +51,7 @@ static int raysOf(const vplRun* run, const vplVirtualLights* lights)
 // The distance for lights on area lights, which are half of the lights that a hit evaluates.
 static float areaLightDistance(const vplGeometry* g)
 {
-    double area = 0;
-    for (int i = 0; i < g->triangleCount; i++) {
-        const vplRgb e = g->materials[g->triangleMaterials[i]].emission;
-        area += e.r + e.g + e.b > 0 ? vplGeometry_TriangleArea(g, i) : 0;
-    }
-    return (float)sqrt(area / (0.5 * MIN_HIT_LIGHTS * VPL_PI));
+    return (float)sqrt(g->emittingArea / (0.5 * MIN_HIT_LIGHTS * VPL_PI));
 }
 
 vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights* lights,
@@ -73,6 +68,7 @@ vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights
                               .emitters = plan->emitters,
                               .shadows = shadows,
                               .emitterCount = plan->emitterCount,
+                              .trianglesPerPoint = plan->trianglesPerPoint,
                               .lights = lights->lights,
                               .lightCount = lights->count,
                               .lightRays = plan->options.lights.shadows != VPL_LIGHT_SHADOWS_NONE,

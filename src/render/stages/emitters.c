@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stages for emitters: shadow maps of points and spots, points on area lights, and reflective shadow
 // maps.
+#include "render/plan.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
@@ -83,11 +84,31 @@ void vplDestroyEmitterMaps(void* result)
     }
 }
 
+// ---- trees
+
+// Paths ask the emitters of the scene, also where other methods sample them.
+vplResult vplMakeEmitterTrees(const vplRun* run, void** resultOut)
+{
+    const vplPlan* p = run->plan;
+    const bool paths = p->options.method == VPL_METHOD_PATH;
+    vplEmitterTrees* trees = NULL;
+    TRY(vplEmitterTrees_Create(run->results[VPL_STAGE_GEOMETRY], paths ? p->sceneEmitters : p->emitters,
+                               paths ? p->sceneEmitterCount : p->emitterCount, vplTreesOf(p), &trees));
+    *resultOut = trees;
+    return VPL_SUCCESS;
+}
+
+void vplDestroyEmitterTrees(void* result)
+{
+    vplEmitterTrees_Destroy(result);
+}
+
 // ---- area lights and the environment
 
 vplResult vplMakeAreaLights(const vplRun* run, void** resultOut)
 {
     const vplLightOptions* o = &run->plan->options.lights;
+    const bool chosen = run->plan->trianglesPerPoint > 0; // from a tree
     const int count = o->areaLightSamples, skyCount = run->plan->hasSky ? o->skySamples : 0;
     vplAreaLights* area = vplArena_AllocZero(run->arena, 1, sizeof *area);
     vplShadeLight* lights = vplArena_Alloc(run->arena, (size_t)count + (size_t)skyCount, sizeof *lights);
@@ -96,7 +117,7 @@ vplResult vplMakeAreaLights(const vplRun* run, void** resultOut)
     TRY(vplEmission_Create(run->results[VPL_STAGE_GEOMETRY], NULL, 0, &emission));
     if (emission->sourceCount > 0) {
         area->lights = lights;
-        area->count = vplSampleAreaLights(emission, count, lights);
+        area->count = chosen ? 0 : vplSampleAreaLights(emission, count, lights);
         area->minDistance = (float)(0.5 * sqrt(vplEmission_Area(emission) / count / VPL_PI));
         area->skyCount = skyCount > 0 ? vplSampleSky(emission, skyCount, lights + area->count) : 0;
         area->count += area->skyCount;

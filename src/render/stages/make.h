@@ -10,14 +10,14 @@ typedef vplResult vplMakeFcn(const vplRun* run, void** resultOut);
 typedef void vplDestroyFcn(void* result);
 typedef void vplReportFcn(const vplRun* run);
 
-vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeAreaLights, vplMakeReflectiveMaps,
-    vplMakeParticles, vplMakeFirstBounce, vplMakeClusters, vplMakeParaboloids, vplMakeSecondBounce,
-    vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeFurtherBounces, vplMakeClusteredLights,
-    vplMakeVirtualLights, vplMakePatches, vplMakeSides, vplMakePatchMesh, vplMakeFormFactors,
-    vplMakePatchLight, vplMakeSolution, vplMakeVertexLight, vplMakePicture, vplMakePaths;
+vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeEmitterTrees, vplMakeAreaLights,
+    vplMakeReflectiveMaps, vplMakeParticles, vplMakeFirstBounce, vplMakeClusters, vplMakeParaboloids,
+    vplMakeSecondBounce, vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeFurtherBounces,
+    vplMakeClusteredLights, vplMakeVirtualLights, vplMakePatches, vplMakeSides, vplMakePatchMesh,
+    vplMakeFormFactors, vplMakePatchLight, vplMakeSolution, vplMakeVertexLight, vplMakePicture, vplMakePaths;
 
-vplDestroyFcn vplDestroyGeometry, vplDestroyEmitterMaps, vplDestroyReflectiveMaps, vplDestroyLightSet,
-    vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyFurtherBounces,
+vplDestroyFcn vplDestroyGeometry, vplDestroyEmitterMaps, vplDestroyEmitterTrees, vplDestroyReflectiveMaps,
+    vplDestroyLightSet, vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyFurtherBounces,
     vplDestroyClusteredLights, vplDestroyPatches, vplDestroySides, vplDestroyPatchMesh, vplDestroyFormFactors,
     vplDestroyImage, vplDestroyPaths;
 

@@ -93,7 +93,8 @@ vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
                              .meet = meetPatch,
                              .user = light,
                              .emitters = run->plan->emitters,
-                             .emitterCount = run->plan->emitterCount};
+                             .emitterCount = run->plan->emitterCount,
+                             .trianglesPerPoint = run->plan->trianglesPerPoint};
     if (area != NULL) {
         defOut->areaLights = area->lights;
         defOut->areaLightCount = area->count;

@@ -101,7 +101,6 @@ static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* lig
     const int room = sideCount < CHUNK_SIDES ? sideCount : CHUNK_SIDES;
     const size_t points = (size_t)room * (size_t)run->plan->options.radiosity.lightSamples;
     const int emitterCount = run->plan->emitterCount;
-    vplShadow* shadows = vplArena_AllocZero(run->scratch, (size_t)emitterCount, sizeof *shadows);
     Chunk* chunk = vplArena_AllocZero(run->scratch, 1, sizeof *chunk);
     vplSurfacePoint* places = vplArena_Alloc(run->scratch, points, sizeof *places);
     vplRgb* irradiance = vplArena_Alloc(run->scratch, points, sizeof *irradiance);
@@ -114,9 +113,9 @@ static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* lig
     const int sky = area != NULL ? area->skyCount : 0; // area lights are patches that emit
     const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                              .emitters = run->plan->emitters,
-                             .shadows = shadows,
                              .emitterCount = emitterCount,
                              .emittersPerPoint = chosen,
+                             .emitterTrees = run->results[VPL_STAGE_EMITTER_TREES],
                              .areaLights = sky > 0 ? area->lights + (area->count - sky) : NULL,
                              .areaLightCount = sky};
     for (int first = 0; first < sideCount; first += CHUNK_SIDES) {

@@ -57,6 +57,7 @@ static vplResult createPaths(const vplRun* run, Paths* paths)
                direct = vplDescribePaths(plan, VPL_SHOW_DIRECT);
     picture.firstRow = direct.firstRow = run->firstRow;
     picture.endRow = direct.endRow = run->endRow;
+    picture.trees = direct.trees = run->results[VPL_STAGE_EMITTER_TREES];
     TRY(vplPathTracer_Create(g, &picture, &paths->picture));
     return plan->splitsLight ? vplPathTracer_Create(g, &direct, &paths->direct) : VPL_SUCCESS;
 }

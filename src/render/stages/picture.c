@@ -139,6 +139,7 @@ static void addDirect(const vplRun* run, const vplShadow* shadows, vplShadeDef* 
     def->shadows = shadows;
     def->emitterCount = run->plan->emitterCount;
     def->emission = true;
+    def->trianglesPerPoint = run->plan->trianglesPerPoint;
     if (area != NULL) {
         def->areaLights = area->lights;
         def->areaLightCount = area->count;
@@ -181,6 +182,7 @@ static vplShadeDef describe(const vplRun* run)
                          .firstRow = run->firstRow,
                          .endRow = run->endRow,
                          .emittersPerPoint = run->plan->emittersPerPoint,
+                         .emitterTrees = run->results[VPL_STAGE_EMITTER_TREES],
                          .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL,
                          .progress = run->progress,
                          .progressUser = run->runner};
@@ -282,9 +284,7 @@ static vplResult shadePicture(const vplRun* run, Shading* s, vplImage* image)
     const vplEmitterMaps* maps = run->results[VPL_STAGE_EMITTER_MAPS];
     const bool many = plan->options.output.supersample > 1;
     const int lights = countLights(run);
-    s->shadows = maps != NULL
-                     ? maps->shadows
-                     : vplArena_AllocZero(run->scratch, (size_t)plan->emitterCount, sizeof(vplShadow));
+    s->shadows = maps != NULL ? maps->shadows : NULL; // rays
     s->sums = many ? vplArena_Alloc(run->scratch, vplValueCount(image), sizeof *s->sums) : NULL;
     TRY(vplArena_Check(run->scratch));
     return lights > 0 && plan->options.lights.shadows == VPL_LIGHT_SHADOWS_MAP

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+// Tests of trees of emitters as pictures use them: triangles that emit, the stage that makes trees, and their memory.
+#include "geometry/triangle.h"
+#include "path_scenes.h"
+#include "render/runner.h"
+
+enum { LAMPS = 100, CLOSE = 1024, SAMPLES = 64 };
+
+static vplVec3 pointAt(uint64_t index, float size)
+{
+    const double u[3] = {uniformAt(73, 3 * index), uniformAt(73, 3 * index + 1),
+                         uniformAt(73, 3 * index + 2)};
+    return vplVec(size * (float)(2 * u[0] - 1), size * (float)(2 * u[1] - 1), size * (float)(2 * u[2] - 1));
+}
+
+// A room with small quads that emit, and points.
+static vplScene* hall(vplContext* context, int quads, int points)
+{
+    vplScene* scene = newScene(context);
+    addRoom(scene, addGrey(scene, 0.5f, 0));
+    const int glow = addGrey(scene, 0.2f, 2);
+    for (int i = 0; i < quads; i++) {
+        addQuad(scene, glow, pointAt((uint64_t)i, 0.8f), i % 2, 0.05f + 0.0005f * (float)i);
+    }
+    for (int i = 0; i < points; i++) {
+        addEmitter(scene, VPL_EMITTER_POINT, pointAt(5000 + (uint64_t)i, 0.9f), vplVec(0, -1, 0), 0.01f);
+    }
+    addCamera(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1), 1.4);
+    return scene;
+}
+
+// Points of a wall so close to each other that they receive the same light; each chooses for itself.
+static void lightClosePoints(const vplGeometry* g, const vplShadeDef* def, int triangle, double sumsOut[2])
+{
+    static vplSurfacePoint points[CLOSE];
+    static vplRgb irradiance[CLOSE];
+    const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
+    const vplVec3 centre = vplScale(1.0f / 3, vplAdd(t.corner[0], vplAdd(t.corner[1], t.corner[2]))),
+                  n = g->normals[triangle];
+    for (int i = 0; i < CLOSE; i++) {
+        vplVec3 offset = pointAt(9000 + (uint64_t)i, 0.001f);
+        offset = vplSub(offset, vplScale(vplDot(offset, n), n));
+        points[i] = (vplSurfacePoint){vplAdd(centre, offset), n, triangle};
+    }
+    sumsOut[0] = sumsOut[1] = 0;
+    assert_int_equal(vplShadePoints(g, def, points, CLOSE, irradiance, NULL), VPL_SUCCESS);
+    for (int i = 0; i < CLOSE; i++) {
+        sumsOut[0] += (double)irradiance[i].r / CLOSE;
+        sumsOut[1] += (double)irradiance[i].r * (double)irradiance[i].r / CLOSE;
+    }
+}
+
+// The mean over many choices is the light of all triangles, for which 64 points on each lamp stand, with their shadows.
+TEST(ChosenTrianglesHaveTheMeanOfAll, 2)
+{
+    static vplShadeLight all[LAMPS * SAMPLES];
+    vplScene* scene = hall(context, LAMPS, 0);
+    vplGeometry* g;
+    vplEmission* emission;
+    int checked = 0;
+    double squares = 0;
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    assert_int_equal(vplEmission_Create(g, NULL, 0, &emission), VPL_SUCCESS);
+    const vplShadeDef chosenDef = {.lighting = VPL_LIGHTING_PHYSICAL, .trianglesPerPoint = 4},
+                      allDef = {.lighting = VPL_LIGHTING_PHYSICAL,
+                                .areaLights = all,
+                                .areaLightCount = vplSampleAreaLights(emission, LAMPS * SAMPLES, all)};
+    for (int triangle = 0; triangle < 12; triangle++) { // the walls
+        double sum[2], chosen[2];
+        lightClosePoints(g, &allDef, triangle, sum);
+        lightClosePoints(g, &chosenDef, triangle, chosen);
+        const double error = sqrt(fmax(chosen[1] - chosen[0] * chosen[0], 0) / CLOSE);
+        assertNear(chosen[0], sum[0], 4 * error + 0.003 * sum[0], "irradiance", triangle);
+        squares += error > 0 ? (chosen[0] - sum[0]) * (chosen[0] - sum[0]) / (error * error) : 0;
+        checked += error > 0;
+    }
+    printf("# %d places, mean square of the difference in standard errors %.2f\n", checked,
+           squares / checked);
+    assert_true(checked >= 8 && squares < 2.5 * checked);
+    vplEmission_Destroy(emission);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+}
+
+static bool hasStage(const vplPlan* plan, vplStageId id)
+{
+    for (int i = 0; i < plan->stageCount; i++) {
+        if (plan->stages[i].id == (int)id) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// One more lamp than points that stand for lamps.
+TEST(TrianglesAreChosenWhereLampsOutnumberTheirPoints, 1)
+{
+    static const vplMethod methods[] = {VPL_METHOD_DIRECT, VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_RADIOSITY,
+                                        VPL_METHOD_SSVP, VPL_METHOD_KELLER};
+    for (int many = 0; many < 2; many++) {
+        vplScene* scene = hall(context, SAMPLES + many, 0);
+        for (int i = 0; i < 5; i++) {
+            const bool chooses = many && methods[i] != VPL_METHOD_KELLER; // whose lights lie on lamps
+            vplRenderOptions o = plainOptions();
+            vplPlan* plan;
+            o.method = methods[i];
+            assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+            assert_int_equal(plan->trianglesPerPoint, chooses ? SAMPLES : 0);
+            assert_int_equal(hasStage(plan, VPL_STAGE_EMITTER_TREES), chooses);
+            assert_int_equal(hasStage(plan, VPL_STAGE_AREA_LIGHTS),
+                             !chooses && methods[i] != VPL_METHOD_KELLER);
+            vplPlan_Destroy(plan);
+        }
+        vplScene_Destroy(scene);
+    }
+}
+
+// Passes, frames and other stages share the trees, until an emitter moves.
+TEST(TreesOfEmittersAreMadeOnce, 1)
+{
+    vplScene* scene = hall(context, 0, 1100);
+    vplHistory* history;
+    assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
+    vplRenderOptions o = plainOptions();
+    o.output.width = o.output.height = 8;
+    o.method = VPL_METHOD_KELLER;
+    o.stop.passes = 3;
+    o.sequence.history = history;
+    for (int frame = 0; frame < 3; frame++) {
+        if (frame == 2) {
+            vplEmitterDef moved = *vplScene_GetEmitter(scene, 7);
+            moved.position.x += 0.01f;
+            assert_int_equal(vplScene_SetEmitter(scene, 7, &moved), VPL_SUCCESS);
+        }
+        vplImage_Destroy(renderScene(scene, &o, NULL));
+        assert_int_equal(history->slots[VPL_STAGE_EMITTER_TREES].build, frame < 2 ? 1 : 2);
+    }
+    vplHistory_Destroy(history);
+    vplScene_Destroy(scene);
+}
+
+static double peakOf(vplContext* context, vplMethod method, int points, double* plannedOut)
+{
+    vplScene* scene = hall(context, 0, points);
+    vplRenderOptions o = plainOptions();
+    vplRenderStats stats;
+    vplPlan* plan;
+    o.method = method;
+    o.output.width = o.output.height = 8;
+    o.path.samples = 1;
+    o.particles.count = 16;
+    assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+    *plannedOut = (double)plan->peakBytes;
+    vplPlan_Destroy(plan);
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    vplScene_Destroy(scene);
+    return (double)stats.peakBytes;
+}
+
+// A description of a shadow map for each lamp took 1,800 bytes of each of 100,000, although rays cast all shadows.
+TEST(LampsNeedFewBytesEach, 1)
+{
+    enum { FEW = 2000, MANY = 12000 };
+    static const vplMethod methods[] = {VPL_METHOD_DIRECT, VPL_METHOD_KELLER, VPL_METHOD_PATH};
+    for (int i = 0; i < 3; i++) {
+        double planned[2];
+        const double few = peakOf(context, methods[i], FEW, &planned[0]),
+                     many = peakOf(context, methods[i], MANY, &planned[1]);
+        const double each = (many - few) / (MANY - FEW), foretold = (planned[1] - planned[0]) / (MANY - FEW);
+        printf("# method %d: %.0f bytes per lamp, planned %.0f\n", methods[i], each, foretold);
+        assert_true(each < 650);
+        assertNear(foretold, each, 0.3 * each, "planned", i);
+    }
+}
