@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the library, program, unit tests and golden pictures for other machines and runs them there or in an emulator: all
-# golden pictures must have the recorded bits. tests/portability.sh [TARGET...]: default musl i386 s390x mingw. Installs what
+# golden pictures must have the recorded bits. tests/portability.sh [TARGET...]: default musl i386 s390x; mingw does not build yet. Installs what
 # is missing, as root; a target whose compiler or libraries cannot be had is skipped with a sentence. tests/portability.md
 # has the results, and the reasons for what is left out. VPL_GOLDEN_ONLY=1 leaves out the unit tests.
 here=build/portability
@@ -150,7 +150,7 @@ mingw() {
         LDLIBS="-L$here/mingw-root/lib -ljansson -lm"
 }
 
-for name in ${*:-musl i386 s390x mingw}; do
+for name in ${*:-musl i386 s390x}; do
     case $name in
     musl | i386 | s390x | mingw) $name ;;
     *) echo "tests/portability.sh: no target $name; there are musl, i386, s390x and mingw" >&2; exit 2 ;;
