@@ -42,7 +42,15 @@ ifeq ($(shell $(CC) -dM -E -x c /dev/null 2>/dev/null | grep -c __i386__),1)
 MACHINE  := i386
 STANDARD += -msse2 -mfpmath=sse -mstackrealign
 endif
-ISAS    := scalar sse2 $(if $(filter x86_64%,$(MACHINE)),avx2 avx512)
+# Windows: what it lacks of POSIX is in src/windows. gcc keeps 16 bytes of alignment on its stack, so that functions with wider
+# vectors crash (gcc's bug 54412): AVX is left out. Programs need no DLL but those of Windows.
+ifneq ($(findstring mingw,$(MACHINE)),)
+STANDARD += -D__USE_MINGW_ANSI_STDIO=1 -Isrc/windows -include src/windows/posix.h -static
+WIDE     :=
+else
+WIDE     := $(if $(filter x86_64%,$(MACHINE)),avx2 avx512)
+endif
+ISAS    := scalar sse2 $(WIDE)
 ISA_scalar := -fno-tree-vectorize -fno-tree-slp-vectorize
 ISA_sse2   :=
 # Without this gcc unrolls loops over 16 lanes completely instead of vectorising them.
@@ -76,7 +84,7 @@ SHARED         := libvpl.so.$(VERSION)
 NULLS          := $(if $(shell command -v python3),$(BUILD)/nulls)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c examples/tasks/*.c))
 
-.PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install uninstall clean format fuzz soak faults coverage test-mpi
+.PHONY: all libs programs test-programs help deps demo test check-all portability lint determinism bench bench-peers golden gallery install uninstall clean format fuzz soak faults coverage test-mpi
 
 # Headers that programs need, each with the Debian package that has it.
 NEEDS := jansson.h=libjansson-dev stb_image.h=libstb-dev
@@ -108,6 +116,10 @@ test-programs: programs $(NULLS) $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPL
 ## make check-all   installs what is missing, the tests under gcc and clang, release, debug, sanitizers, threads, aarch64
 check-all: deps
 	@tests/check_all.sh
+
+## make portability the tests on musl, i386 and s390x, by cross compilers and emulators: installs them
+portability: deps
+	@tests/portability.sh
 
 ## make lint        static checks of src by cppcheck and clang-tidy (installs them)
 lint: deps

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf_support.h"
 
+#include "base/bytes.h"
+
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -15,7 +17,9 @@ int addBytes(Blob* blob, const void* bytes, size_t size)
 
 int addFloats(Blob* blob, const float* values, int count)
 {
-    return addBytes(blob, values, (size_t)count * sizeof *values);
+    uint8_t bytes[sizeof blob->bytes];
+    assert_true((size_t)count * sizeof *values <= sizeof bytes);
+    return addBytes(blob, bytes, (size_t)(vplPutFloats(bytes, values, (size_t)count) - bytes));
 }
 
 static void putBase64(FILE* file, const Blob* blob)

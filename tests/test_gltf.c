@@ -2,6 +2,7 @@
 // Tests of glTF files: damaged and odd ones, accessors of every form, primitives, nodes.
 #include "gltf_support.h"
 
+#include "base/bytes.h"
 #include "math/vec.h"
 
 #include <unistd.h>
@@ -101,11 +102,13 @@ static int addPoints(Blob* blob, int type, float factor, int gap)
     size_t size = 0;
     for (int i = 0; i < 12; i++) {
         const float value = factor * SQUARE[i];
-        const unsigned word = (unsigned)(int64_t)value;
-        const unsigned char little[4] = {(unsigned char)word, (unsigned char)(word >> 8),
-                                         (unsigned char)(word >> 16), (unsigned char)(word >> 24)};
         const size_t width = type <= 5121 ? 1 : type <= 5123 ? 2 : 4;
-        memcpy(bytes + size, type == 5126 ? (const void*)&value : (const void*)little, width);
+        uint8_t little[4];
+        vplPutWord(little, (uint32_t)(int64_t)value);
+        if (type == 5126) {
+            vplPutFloats(little, &value, 1);
+        }
+        memcpy(bytes + size, little, width);
         size += width + (i % 3 == 2 ? (size_t)gap : 0);
     }
     return addBytes(blob, bytes, size);
@@ -196,7 +199,7 @@ TEST_ALONE(SparseAccessorsReplaceElements)
 {
     static const unsigned char bytes[] = {1, 2, 3}, shorts[] = {1, 0, 2, 0, 3, 0};
     static const float wrong[12] = {0, 0, 0, 9, 9, 9, 8, 8, 8, 7, 7, 7};
-    static const unsigned last[2] = {2, 3};
+    static const unsigned char last[8] = {2, 0, 0, 0, 3}, after[8] = {4, 0, 0, 0, 5};
     Desk d;
     openDesk(&d);
     for (int i = 0; i < 4; i++) {
@@ -204,7 +207,7 @@ TEST_ALONE(SparseAccessorsReplaceElements)
         const int base = addFloats(&blob, wrong, 12), values = addFloats(&blob, SQUARE + 3, 9);
         const int one = addBytes(&blob, bytes, 3), two = addBytes(&blob, shorts, 6),
                   tail = addBytes(&blob, last, 8);
-        const int fours = addBytes(&blob, (unsigned[2]){4, 5}, 8), indices = addIndices(&blob, 5125);
+        const int fours = addBytes(&blob, after, 8), indices = addIndices(&blob, 5125);
         memset(blob.bytes + indices + 16, 0, 8); // the last two indices come from the sparse part
         writeGltf(
             deskPath(&d, "a.gltf"), &blob,

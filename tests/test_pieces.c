@@ -2,6 +2,8 @@
 // Tests of pictures in pieces: whatever the division and the order, the bits are those of one render.
 #include "test.h"
 
+#include "base/bytes.h"
+
 // Options of one line, for pictures of three bands of tiles.
 static vplRenderOptions optionsOf(const char* words)
 {
@@ -52,6 +54,32 @@ static uint64_t hashOfPieces(vplContext* context, const vplScene* scene, const v
     vplImage_Destroy(image);
     vplAssembly_Destroy(a);
     return hash;
+}
+
+// A piece of one machine fits into the picture of another only if both hash the caller's view alike, whatever the order of
+// bytes in memory. The number was recorded on x86-64.
+TEST(TheHashOfTheCallersViewIsTheSameOnEveryMachine, 1)
+{
+    enum { SCENE_HASH = 16 }; // its place in the bytes of a piece
+    vplScene* scene;
+    vplRenderer* r;
+    vplPieceGrid grid;
+    uint8_t* bytes;
+    size_t size;
+    assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
+    vplCameraDef view = *vplScene_GetCamera(scene, 0);
+    view.eye.x += 0.5f;
+    vplRenderOptions o = optionsOf("--method direct --antialias 1");
+    o.output.width = o.output.height = 8;
+    o.view = &view;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Divide(r, 1, &grid), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_MakePiece(r, &grid, 0, &bytes, &size), VPL_SUCCESS);
+    assert_int_equal(vplTakeWord(bytes + SCENE_HASH), 0x8250ab1a);
+    assert_int_equal(vplTakeWord(bytes + SCENE_HASH + 4), 0xc8d06073);
+    vplBytes_Free(context, bytes);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
 }
 
 TEST(PiecesHaveTheBitsOfOneRender, 2)

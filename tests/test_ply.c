@@ -2,6 +2,7 @@
 // Tests of writing lit meshes as PLY files, which are read back byte by byte.
 #include "patch_support.h"
 
+#include "base/bytes.h"
 #include "math/vec.h"
 #include "radiosity/mesh/patch_mesh.h"
 
@@ -18,8 +19,9 @@ typedef struct Ply {
 
 static float floatAt(const uint8_t* at)
 {
+    const uint32_t bits = vplTakeWord(at);
     float value;
-    memcpy(&value, at, sizeof value);
+    memcpy(&value, &bits, sizeof value);
     return value;
 }
 
@@ -33,10 +35,8 @@ static int cornerOf(const Ply* ply, int face, int corner)
 {
     const uint8_t* at =
         ply->bytes + ply->head + (size_t)ply->vertexCount * VERTEX_BYTES + (size_t)face * FACE_BYTES;
-    int32_t index;
     assert_int_equal(at[0], 3);
-    memcpy(&index, at + 1 + 4 * corner, sizeof index);
-    return index;
+    return (int)vplTakeWord(at + 1 + 4 * corner);
 }
 
 static vplVec3 vecAt(const Ply* ply, int vertex, int offset)

@@ -42,8 +42,13 @@ uint64_t vplNextStamp(vplContext* context);
 
 // ---- messages
 
+#if defined(__MINGW32__)
+#define VPL_PRINTF_KIND gnu_printf // of __USE_MINGW_ANSI_STDIO, which knows %zu
+#else
+#define VPL_PRINTF_KIND printf
+#endif
 #if defined(__GNUC__)
-#define VPL_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#define VPL_PRINTF(text, first) __attribute__((format(VPL_PRINTF_KIND, text, first)))
 #else
 #define VPL_PRINTF(text, first)
 #endif

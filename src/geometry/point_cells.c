@@ -20,12 +20,12 @@ vplResult vplPointCells_Create(vplArena* arena, const vplVec3* points, size_t co
     return VPL_SUCCESS;
 }
 
-static uint64_t slotOf(const vplPointCells* cells, const vplCell* cell)
+static size_t slotOf(const vplPointCells* cells, const vplCell* cell)
 {
     uint64_t h = (uint64_t)cell->at[0] * UINT64_C(0x9E3779B97F4A7C15);
     h = (h ^ (h >> 32) ^ (uint64_t)cell->at[1]) * UINT64_C(0xBF58476D1CE4E5B9);
     h = (h ^ (h >> 32) ^ (uint64_t)cell->at[2]) * UINT64_C(0x94D049BB133111EB);
-    return (h ^ (h >> 32)) & cells->mask;
+    return (size_t)(h ^ (h >> 32)) & cells->mask;
 }
 
 vplCell vplPointCells_At(const vplPointCells* cells, const double position[3])
@@ -47,7 +47,7 @@ void vplPointCells_Add(vplPointCells* cells, int point)
     double at[3];
     vplToDouble3(cells->points[point], at);
     const vplCell cell = vplPointCells_At(cells, at);
-    const uint64_t slot = slotOf(cells, &cell);
+    const size_t slot = slotOf(cells, &cell);
     cells->next[point] = cells->table[slot];
     cells->table[slot] = point;
 }

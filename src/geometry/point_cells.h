@@ -11,7 +11,7 @@
 typedef struct vplPointCells {
     const vplVec3* points;
     int *table, *next; // of slots and of points; -1: no more
-    uint64_t mask;
+    size_t mask;
     double size; // of a cell, metres
 } vplPointCells;
 

@@ -92,7 +92,7 @@ static int64_t readStream(exr_const_context_t exr, void* user, void* to, uint64_
     if (offset >= s->size) {
         return 0;
     }
-    uint64_t count = s->size - offset < size ? s->size - offset : size;
+    const size_t left = s->size - (size_t)offset, count = left < size ? left : (size_t)size;
     memcpy(to, s->bytes + offset, count);
     return (int64_t)count;
 }
@@ -112,17 +112,17 @@ static int64_t writeStream(exr_const_context_t exr, void* user, const void* from
     static const uint8_t zeros[256];
     vplByteBuffer* buffer = ((Stream*)user)->buffer;
     while (buffer->size < offset && !buffer->failed) {
-        uint64_t gap = offset - buffer->size;
-        vplByteBuffer_Append(buffer, zeros, gap < sizeof zeros ? gap : sizeof zeros);
+        const uint64_t gap = offset - buffer->size;
+        vplByteBuffer_Append(buffer, zeros, gap < sizeof zeros ? (size_t)gap : sizeof zeros);
     }
     if (buffer->failed) {
         return -1;
     }
-    uint64_t over = buffer->size - offset < size ? buffer->size - offset : size;
+    const size_t left = buffer->size - (size_t)offset, over = left < size ? left : (size_t)size;
     if (over > 0) {
-        memcpy(buffer->bytes + offset, from, over);
+        memcpy(buffer->bytes + (size_t)offset, from, over);
     }
-    vplByteBuffer_Append(buffer, (const uint8_t*)from + over, size - over);
+    vplByteBuffer_Append(buffer, (const uint8_t*)from + over, (size_t)size - over);
     return buffer->failed ? -1 : (int64_t)size;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Portable float map: "PF" (RGB) or "Pf" (grey), size, scale (its sign is the byte order), rows bottom-up.
 #include "base/arena.h"
+#include "base/bytes.h"
 #include "image/image_file.h"
 
 #include <math.h>
@@ -29,13 +30,7 @@ vplResult vplEncodePfm(const vplImage* image, const vplWriteOptions* options, vp
         return VPL_OUT_OF_MEMORY;
     }
     for (int y = image->height - 1; y >= 0; y--) {
-        for (size_t i = 0; i < rowFloats; i++) {
-            uint32_t word;
-            memcpy(&word, image->pixels + (size_t)y * rowFloats + i, 4);
-            for (int b = 0; b < 4; b++) {
-                row[4 * i + (size_t)b] = (uint8_t)(word >> 8 * b);
-            }
-        }
+        vplPutFloats(row, image->pixels + (size_t)y * rowFloats, rowFloats);
         vplByteBuffer_Append(buffer, row, 4 * rowFloats);
     }
     vplFree(image->context, row);

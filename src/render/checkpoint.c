@@ -143,12 +143,27 @@ static bool isTruthValid(const vplRenderer* r)
 
 // ---- saving
 
+// Hashes a view word by word, the low half of a double first, so that files go from one machine to any other.
+static uint64_t hashView(uint64_t state, const vplView* view)
+{
+    const size_t first = offsetof(vplView, scaleX) / sizeof(uint32_t);
+    const double numbers[] = {view->scaleX,  view->scaleY,    view->offsetX,
+                              view->offsetY, view->nearPlane, view->farPlane};
+    uint32_t words[sizeof *view / sizeof(uint32_t)];
+    memcpy(words, view, sizeof words);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        uint64_t bits;
+        memcpy(&bits, &numbers[i], sizeof bits);
+        words[first + 2 * i] = (uint32_t)bits;
+        words[first + 2 * i + 1] = (uint32_t)(bits >> 32);
+    }
+    return vplHashWords(state, words, sizeof words / sizeof *words);
+}
+
 uint64_t vplRenderer_HashScene(const vplRenderer* r)
 {
     const uint64_t scene = vplScene_GetHash(r->runner.run.scene);
-    uint32_t view[sizeof r->plan->view / sizeof(uint32_t)];
-    memcpy(view, &r->plan->view, sizeof view);
-    return r->asked.view != NULL ? vplHashWords(scene, view, sizeof view / sizeof *view) : scene;
+    return r->asked.view != NULL ? hashView(scene, &r->plan->view) : scene;
 }
 
 static Header describe(const vplRenderer* r, const vplByteBuffer* text)

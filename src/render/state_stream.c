@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render/state_stream.h"
 
+#include "base/bytes.h"
 #include "base/hash.h"
 
 #include <math.h>
@@ -11,11 +12,9 @@ void vplStream_Word(vplStream* s, uint32_t* word)
     uint8_t* b = s->bytes + s->at;
     s->at += 4;
     if (s->writes) {
-        for (int i = 0; i < 4; i++) {
-            b[i] = (uint8_t)(*word >> 8 * i);
-        }
+        vplPutWord(b, *word);
     } else {
-        *word = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+        *word = vplTakeWord(b);
     }
 }
 

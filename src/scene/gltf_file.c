@@ -2,6 +2,7 @@
 // The file of a glTF scene: JSON, or chunks of a .glb file, and the checks of what it requires.
 #include "scene/gltf.h"
 
+#include "base/bytes.h"
 #include "base/file.h"
 
 #include <stdlib.h>
@@ -66,8 +67,7 @@ vplResult vplGltf_ReadElement(const vplJson* element, int count, int* out)
 
 static uint32_t wordAt(const char* bytes)
 {
-    const unsigned char* b = (const unsigned char*)bytes;
-    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    return vplTakeWord((const uint8_t*)bytes);
 }
 
 static vplResult failAt(const vplGltf* g, size_t byte, const char* found, uint64_t number,

@@ -4,6 +4,8 @@
 #include "base/file_kind.h"
 #include "scene/model.h"
 
+#include "base/bytes.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -38,7 +40,7 @@ static vplResult readBinary(Stl* s, uint32_t triangles)
         const unsigned char* b = (const unsigned char*)s->text->bytes + at;
         float p[3];
         for (int k = 0; k < 3; k++, b += 4) {
-            const uint32_t bits = b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+            const uint32_t bits = vplTakeWord(b);
             memcpy(&p[k], &bits, sizeof bits);
             if (!(fabsf(p[k]) <= VPL_MAX_MAGNITUDE)) {
                 return vplFail(s->text->context, VPL_PARSE_ERROR,
@@ -81,8 +83,7 @@ vplResult vplReadStl(vplText* bytes, vplArena* scratch, int material, vplRawMesh
     (void)scratch;
     const unsigned char* b = (const unsigned char*)bytes->bytes + HEAD_BYTES - 4;
     const size_t size = bytes->size;
-    const uint32_t triangles =
-        size < HEAD_BYTES ? 0 : b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    const uint32_t triangles = size < HEAD_BYTES ? 0 : vplTakeWord(b);
     const bool text = size >= 5 && memcmp(bytes->bytes, "solid", 5) == 0;
     Stl s = {bytes, out, 0, material};
     // Some programs begin binary files with "solid", too: their size tells.

@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: MIT
 // Writes a lit mesh with baked vertex colours.
-// Based on: Turk, The PLY Polygon File Format, 1994. Numbers are written as they are in memory, so the
-// machine must be little-endian.
+// Based on: Turk, The PLY Polygon File Format, 1994.
 #include <vpl/imagetools.h>
 
 #include "base/arena.h"
+#include "base/bytes.h"
 #include "math/vec.h"
 #include "radiosity/sides/side.h"
 
 #include <stdio.h>
 #include <string.h>
 
-// A vertex as in the file without its position: 27 bytes without padding. The position before it is of floats,
-// or of doubles in a scene with an origin.
-typedef struct __attribute__((packed)) PlyVertex {
+// What the file says of a vertex behind its position, which is of floats, or of doubles in a scene with an origin.
+typedef struct PlyVertex {
     float normal[3];
     uint8_t code[3]; // sRGB
     float colour[3]; // linear
 } PlyVertex;
 
-typedef struct __attribute__((packed)) PlyFace {
-    uint8_t count; // 3
-    int32_t vertices[3];
+typedef struct PlyFace {
+    uint32_t vertices[3];
 } PlyFace;
+
+// Bytes in the file: without padding, and with the number of corners before a face.
+enum { VERTEX_BYTES = 3 * 4 + 3 + 3 * 4, FACE_BYTES = 1 + 3 * 4 };
 
 // A list of the file's vertices for one vertex of the mesh, each with another reflectance.
 typedef struct Entry {
@@ -95,12 +96,12 @@ static vplResult addTriangle(Baker* b, int triangle, int face)
         return VPL_SUCCESS;
     }
     const vplRgb reflectance = vplReflectanceOf(m->sides, m->triangleOf[triangle], side);
-    PlyFace out = {.count = 3};
+    PlyFace out;
     for (int k = 0; k < 3; k++) {
         const int corner = face == 0 ? k : 2 - k;
         int32_t index = 0;
         TRY(findVertex(b, m->indices[3 * (size_t)triangle + (size_t)corner], face, reflectance, &index));
-        out.vertices[k] = index;
+        out.vertices[k] = (uint32_t)index;
     }
     TRY(vplArena_Reserve(b->arena, &b->faces, &b->faceCapacity, b->faceCount + 1, sizeof *b->faces));
     b->faces[b->faceCount++] = out;
@@ -124,18 +125,28 @@ static vplResult addFaces(Baker* b)
 
 // ---- the file
 
-// Writes a position in the caller's space. Returns the number of bytes.
-static size_t putPosition(const Baker* b, size_t vertex, bool far, char* to)
+// Puts a vertex, its position in the caller's space. Returns the byte behind it.
+static uint8_t* putVertex(const Baker* b, size_t index, bool far, uint8_t* to)
 {
+    const PlyVertex* vertex = &b->vertices[index];
     const double* origin = b->mesh->sides->patches->geometry->origin;
-    const vplVec3 p = b->mesh->positions[b->positions[vertex]];
-    const double place[3] = {origin[0] + (double)p.x, origin[1] + (double)p.y, origin[2] + (double)p.z};
-    if (far) {
-        memcpy(to, place, sizeof place);
-        return sizeof place;
+    const vplVec3 p = b->mesh->positions[b->positions[index]];
+    const float place[3] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; k++) {
+        to = far ? vplPutDouble(to, origin[k] + (double)place[k]) : vplPutFloats(to, &place[k], 1);
     }
-    memcpy(to, &p, sizeof p);
-    return sizeof p;
+    to = vplPutFloats(to, vertex->normal, 3);
+    memcpy(to, vertex->code, 3);
+    return vplPutFloats(to + 3, vertex->colour, 3);
+}
+
+static uint8_t* putFace(const PlyFace* face, uint8_t* to)
+{
+    *to++ = 3;
+    for (int k = 0; k < 3; k++) {
+        to = vplPutWord(to, face->vertices[k]);
+    }
+    return to;
 }
 
 static vplResult writeFile(const Baker* b, const char* path)
@@ -158,20 +169,17 @@ static vplResult writeFile(const Baker* b, const char* path)
                                 "end_header\n",
                                 b->vertexCount, type, type, type, b->faceCount);
     const size_t positionBytes = far ? sizeof(double[3]) : sizeof(float[3]);
-    const size_t vertexBytes = b->vertexCount * (positionBytes + sizeof *b->vertices),
-                 faceBytes = b->faceCount * sizeof *b->faces;
-    const size_t size = (size_t)length + vertexBytes + faceBytes;
-    char* bytes = vplArena_Alloc(b->arena, size, 1);
+    const size_t size =
+        (size_t)length + b->vertexCount * (positionBytes + VERTEX_BYTES) + b->faceCount * FACE_BYTES;
+    uint8_t* bytes = vplArena_Alloc(b->arena, size, 1);
     TRY(vplArena_Check(b->arena));
     memcpy(bytes, head, (size_t)length);
-    char* at = bytes + length;
+    uint8_t* at = bytes + length;
     for (size_t i = 0; i < b->vertexCount; i++) {
-        at += putPosition(b, i, far, at);
-        memcpy(at, &b->vertices[i], sizeof *b->vertices);
-        at += sizeof *b->vertices;
+        at = putVertex(b, i, far, at);
     }
-    if (faceBytes > 0) {
-        memcpy(at, b->faces, faceBytes);
+    for (size_t i = 0; i < b->faceCount; i++) {
+        at = putFace(&b->faces[i], at);
     }
     return vplWriteFile(b->context, path, bytes, size);
 }
