@@ -18,12 +18,12 @@
 // ---- files
 
 // Files are opened as they are on disk: without O_BINARY, bytes 13 are lost and a byte 26 ends the file.
-#define open(path, ...) open(path, O_BINARY | __VA_ARGS__)
-#define O_CLOEXEC O_NOINHERIT
-#define O_NONBLOCK 0
-#define fsync(file) _commit(file)
-#define lstat(path, info) stat(path, info)
-#define mkdir(path, mode) _mkdir(path)
+#define open(path, ...)        open(path, O_BINARY | __VA_ARGS__)
+#define O_CLOEXEC              O_NOINHERIT
+#define O_NONBLOCK             0
+#define fsync(file)            _commit(file)
+#define lstat(path, info)      stat(path, info)
+#define mkdir(path, mode)      _mkdir(path)
 #define realpath(path, buffer) _fullpath(buffer, path, 0)
 
 // access() of Windows refuses to be asked whether a folder can be entered; all can.
@@ -40,10 +40,10 @@ char* vplWindows_MakeFolder(char* path);
 // ---- the locale of a thread, by its name
 
 typedef const char* locale_t;
-#define LC_ALL_MASK 0
+#define LC_ALL_MASK                 0
 #define newlocale(mask, name, base) ((void)(base), (locale_t)(name))
-#define uselocale(locale) vplWindows_UseLocale(locale)
-#define freelocale(locale) ((void)(locale))
+#define uselocale(locale)           vplWindows_UseLocale(locale)
+#define freelocale(locale)          ((void)(locale))
 locale_t vplWindows_UseLocale(locale_t locale);
 
 // ---- signals
@@ -61,7 +61,7 @@ struct sigaction {
     vplWindowsMask sa_mask;
 };
 
-#define sigaddset(mask, number) ((void)(mask))
+#define sigaddset(mask, number)           ((void)(mask))
 #define sigaction(number, action, before) signal(number, (action)->sa_handler)
 
 // ---- the machine
@@ -70,7 +70,7 @@ enum { _SC_PHYS_PAGES, _SC_PAGESIZE, _SC_NPROCESSORS_ONLN };
 #define sysconf(name) vplWindows_Ask(name)
 long vplWindows_Ask(int name);
 
-#define localtime_r(time, out) (localtime_s(out, time) == 0 ? (out) : NULL)
+#define localtime_r(time, out)   (localtime_s(out, time) == 0 ? (out) : NULL)
 #define getloadavg(loads, count) ((void)(loads), -1)
 
 #endif
