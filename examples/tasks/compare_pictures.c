@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The difference of two pictures: compare_pictures A B; succeeds where they differ by less than 10 %.
+// Compares two pictures: compare_pictures A B. Exit code 0 if they differ by less than 10 %.
 #include <vpl/vpl.h>
 
 #include <stdio.h>

@@ -164,9 +164,9 @@ vplResult vplContext_SetSpeeds(vplContext* context, const vplSpeeds* speeds);
 // as vplRenderOptions_Get writes it, decisions, stages, what is left out, and estimates.
 // vplRenderOptions_Load reads the options back, and they render the same bits with any number of threads,
 // instruction set and compiler, as far as no time ends the render; see vplRenderer_WritePlan. Options are
-// resolved, as in vplPlan.options, but for three that mean something else as a number or word: min-distance
-// stays auto, because each pass has its own; light-shadows stays auto where rays were chosen, because ray
-// also replaces shadow maps of emitters; hierarchy stays auto for adaptive patches.
+// written as the plan resolved them (vplPlan.options). Three may stay auto, because they would mean something else as a
+// number or word: min-distance (each pass has its own), light-shadows where rays were chosen (ray would also replace
+// the shadow maps of emitters), and hierarchy for adaptive patches.
 vplResult vplPlan_Write(const vplPlan* plan, const vplScene* scene, const char* path);
 
 // Sets the options that a plan file has; others stay as they are. *sceneHashOut (may be NULL) is the hash of

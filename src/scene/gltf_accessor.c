@@ -2,6 +2,8 @@
 // Accessors of glTF files: typed, strided, sparse. All places are checked when an accessor is opened.
 #include "scene/gltf.h"
 
+#include "base/bytes.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -66,9 +68,7 @@ static vplResult readPart(vplGltf* g, const vplJson* object, int64_t count, size
 
 static uint32_t indexAt(const uint8_t* p, int type)
 {
-    return type == UINT8    ? p[0]
-           : type == UINT16 ? p[0] | (uint32_t)p[1] << 8
-                            : p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+    return type == UINT8 ? p[0] : type == UINT16 ? p[0] | (uint32_t)p[1] << 8 : vplTakeWord(p);
 }
 
 static vplResult readSparse(vplGltf* g, const vplJson* object, vplGltfAccessor* a)

@@ -11,8 +11,9 @@
 
 #include <math.h>
 
-// Cosines, of which the second is that of a mean normal with the normal of a triangle.
-static const double OPPOSITE_COSINE = 0.5, LEAST_COSINE = 0.25;
+static const double OPPOSITE_COSINE =
+    0.5; // a normal whose cosine with the mean so far is below minus this is turned
+static const double LEAST_COSINE = 0.25; // of a mean normal with the normal of a triangle
 
 int64_t vplObj_ReadGroup(vplWord line)
 {

@@ -13,7 +13,7 @@
 #include <float.h>
 #include <math.h>
 
-enum { CHOICE_SEED = 0x656d6974, TRIANGLE_SEED = 0x74726961 };
+enum { CHOICE_SEED = 0x656d6974, ACROSS_SEED = 0x74726961 };
 
 // Irradiance by a unit of intensity, without shadow: as the kernel of all emitters has it.
 static float receive(const vplEmitterRay* e, vplVec3 p, vplVec3 n)
@@ -29,34 +29,64 @@ static float receive(const vplEmitterRay* e, vplVec3 p, vplVec3 n)
     return cosine * (step * step * (3 - 2 * step));
 }
 
-// The emitters of one choice, of all lanes.
+// The numbers in [0, 1) of a choice: one that chooses the source and a coordinate on it, and another coordinate.
+typedef struct Numbers {
+    double source, across;
+} Numbers;
+
+// One choice of all lanes.
 typedef struct Choice {
     vplVec3 way[VPL_LANES];
-    float amount[VPL_LANES];
-    vplRgb intensity[VPL_LANES];
+    float amount[VPL_LANES]; // irradiance by a unit of the source's light, over the probability; 0: none
+    vplRgb light[VPL_LANES]; // intensity or radiance
 } Choice;
 
-static void choose(const vplReceiver* r, const vplDirectLight* direct, const double start[VPL_LANES], int k,
-                   Choice* out)
+typedef void ChooseFcn(const vplReceiver* r, const vplDirectLight* direct, int lane, const Numbers* u,
+                       Choice* out);
+
+static void chooseEmitter(const vplReceiver* r, const vplDirectLight* direct, int l, const Numbers* u,
+                          Choice* out)
 {
     const vplSurface* s = r->points->surface;
-    for (int l = 0; l < VPL_LANES; l++) {
-        out->amount[l] = 0;
-        out->way[l] = vplVec(0, 0, 0);
-        out->intensity[l] = (vplRgb){0, 0, 0};
-        if (r->points->triangle[l] < 0) {
-            continue;
-        }
-        const vplVec3 p = vplVec(s->px[l], s->py[l], s->pz[l]), n = vplVec(s->nx[l], s->ny[l], s->nz[l]);
-        const vplChosenSource c =
-            vplEmitterTree_Choose(direct->tree, p, n, (k + start[l]) / direct->perPoint);
-        if (c.source >= 0) {
-            const int emitter = direct->trees->emission->sources[c.source].emitter;
-            const vplEmitterRay* e = &direct->rays[emitter];
-            out->amount[l] = (float)((double)receive(e, p, n) / (direct->perPoint * c.probability));
-            out->way[l] = vplSub(e->position, r->starts->hit[l].position);
-            out->intensity[l] = direct->emitters[emitter].intensity;
-        }
+    const vplVec3 p = vplSurface_At(s, l), n = vplVec(s->nx[l], s->ny[l], s->nz[l]);
+    const vplChosenSource c = vplEmitterTree_Choose(direct->tree, p, n, u->source);
+    if (c.source >= 0) {
+        const int emitter = direct->trees->emission->sources[c.source].emitter;
+        const vplEmitterRay* e = &direct->rays[emitter];
+        out->amount[l] = (float)((double)receive(e, p, n) / (direct->perPoint * c.probability));
+        out->way[l] = vplSub(e->position, r->starts->hit[l].position);
+        out->light[l] = direct->emitters[emitter].intensity;
+    }
+}
+
+// Squared distances count as at least this share of the triangle's area: nearer, the point's density would blow the light up.
+static const double LEAST_SQUARE = 0x1p-10;
+
+// Chooses a point on a triangle. The amount is the irradiance by a unit of radiance over the density of the point.
+static void chooseTriangle(const vplReceiver* r, const vplDirectLight* direct, int l, const Numbers* u,
+                           Choice* out)
+{
+    const vplSurface* s = r->points->surface;
+    const vplGeometry* g = r->shading->geometry;
+    const vplVec3 p = vplSurface_At(s, l), n = vplVec(s->nx[l], s->ny[l], s->nz[l]);
+    const vplChosenSource c = vplEmitterTree_Choose(direct->triangleTree, p, n, u->source);
+    if (c.source < 0) {
+        return;
+    }
+    const int triangle = direct->trees->emission->sources[c.source].triangle;
+    const vplHit on = vplGeometry_SampleTriangle(g, triangle, (float)c.rest * 0x1.fffffep-1f,
+                                                 (float)u->across * 0x1.fffffep-1f);
+    const vplVec3 way = vplSub(on.position, p);
+    const double x = way.x, y = way.y, z = way.z, square = x * x + y * y + z * z;
+    const double received = n.x * x + n.y * y + n.z * z,
+                 sent = -(on.normal.x * x + on.normal.y * y + on.normal.z * z);
+    if (received > 0 && sent > 0) {
+        const double area = vplGeometry_TriangleArea(g, triangle), least = LEAST_SQUARE * area;
+        const double falloff = 1 / (square > least ? square : least);
+        out->amount[l] =
+            (float)(received * sent / square * falloff * area / (direct->trianglesPerPoint * c.probability));
+        out->way[l] = vplWayToLight(on.position, on.normal, r->starts->hit[l].position);
+        out->light[l] = g->materials[g->triangleMaterials[triangle]].emission;
     }
 }
 
@@ -69,83 +99,51 @@ static void hashPositions(const vplPoints* points, uint64_t seed, double out[VPL
     }
 }
 
-void vplAddChosenEmitters(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
-                          float irradiance[3][VPL_LANES], int64_t* rays)
+typedef struct Choosing {
+    ChooseFcn* choose;
+    int count; // choices of a point
+    float weight;
+} Choosing;
+
+static void addChoices(const vplReceiver* r, const vplDirectLight* direct, const Choosing* choosing,
+                       float irradiance[3][VPL_LANES])
 {
-    vplRayStarts starts;
-    const vplReceiver receiver = {shading, points, &starts, rays};
-    double start[VPL_LANES];
-    vplFindRayStarts(shading, points, &starts);
-    hashPositions(points, CHOICE_SEED, start);
-    for (int k = 0; k < direct->perPoint; k++) {
-        Choice c;
-        choose(&receiver, direct, start, k, &c);
-        vplCastShadowRays(&receiver, c.way, false, c.amount);
+    static const double GOLDEN = 0.61803398874989485;
+    double start[VPL_LANES], across[VPL_LANES];
+    hashPositions(r->points, CHOICE_SEED, start);
+    hashPositions(r->points, ACROSS_SEED, across);
+    for (int k = 0; k < choosing->count; k++) {
+        Choice c = {.amount = {0}};
         for (int l = 0; l < VPL_LANES; l++) {
-            irradiance[0][l] += direct->weight * c.intensity[l].r * c.amount[l];
-            irradiance[1][l] += direct->weight * c.intensity[l].g * c.amount[l];
-            irradiance[2][l] += direct->weight * c.intensity[l].b * c.amount[l];
+            const double along = across[l] + k * GOLDEN;
+            const Numbers u = {(k + start[l]) / choosing->count, along - floor(along)};
+            if (r->points->triangle[l] >= 0) {
+                choosing->choose(r, direct, l, &u, &c);
+            }
+        }
+        vplCastShadowRays(r, c.way, false, c.amount);
+        for (int l = 0; l < VPL_LANES; l++) {
+            irradiance[0][l] += choosing->weight * c.light[l].r * c.amount[l];
+            irradiance[1][l] += choosing->weight * c.light[l].g * c.amount[l];
+            irradiance[2][l] += choosing->weight * c.light[l].b * c.amount[l];
         }
     }
 }
 
-// ---- triangles
-
-// Nearer than this share of the square root of its area, a triangle is as an endless plane, and its light is clamped.
-static const double LEAST_SQUARE = 0x1p-10;
-
-// A choice of a lane: a point on a triangle, and the irradiance by a unit of radiance over the density of the point.
-static void chooseTriangle(const vplReceiver* r, const vplDirectLight* direct, int l, double choice,
-                           double across, Choice* out)
+void vplAddChosenEmitters(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
+                          float irradiance[3][VPL_LANES], int64_t* rays)
 {
-    const vplSurface* s = r->points->surface;
-    const vplGeometry* g = r->shading->geometry;
-    const vplVec3 p = vplSurface_At(s, l), n = vplVec(s->nx[l], s->ny[l], s->nz[l]);
-    const vplChosenSource c = vplEmitterTree_Choose(direct->triangleTree, p, n, choice);
-    if (c.source < 0) {
-        return;
-    }
-    const int triangle = direct->trees->emission->sources[c.source].triangle;
-    const vplHit on = vplGeometry_SampleTriangle(g, triangle, (float)c.rest * 0x1.fffffep-1f,
-                                                 (float)across * 0x1.fffffep-1f);
-    const vplVec3 way = vplSub(on.position, p);
-    const double x = way.x, y = way.y, z = way.z, square = x * x + y * y + z * z;
-    const double received = n.x * x + n.y * y + n.z * z,
-                 sent = -(on.normal.x * x + on.normal.y * y + on.normal.z * z);
-    if (received > 0 && sent > 0) {
-        const double area = vplGeometry_TriangleArea(g, triangle), least = LEAST_SQUARE * area;
-        const double falloff = 1 / (square > least ? square : least);
-        out->amount[l] =
-            (float)(received * sent / square * falloff * area / (direct->trianglesPerPoint * c.probability));
-        out->way[l] = vplWayToLight(on.position, on.normal, r->starts->hit[l].position);
-        out->intensity[l] = g->materials[g->triangleMaterials[triangle]].emission;
-    }
+    vplRayStarts starts;
+    vplFindRayStarts(shading, points, &starts);
+    addChoices(&(vplReceiver){shading, points, &starts, rays}, direct,
+               &(Choosing){chooseEmitter, direct->perPoint, direct->weight}, irradiance);
 }
 
 void vplAddChosenTriangles(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
                            float irradiance[3][VPL_LANES], int64_t* rays)
 {
-    static const double GOLDEN = 0.61803398874989485;
     vplRayStarts starts;
-    const vplReceiver receiver = {shading, points, &starts, rays};
-    double start[VPL_LANES], across[VPL_LANES];
     vplFindRayStarts(shading, points, &starts);
-    hashPositions(points, CHOICE_SEED, start);
-    hashPositions(points, TRIANGLE_SEED, across);
-    for (int k = 0; k < direct->trianglesPerPoint; k++) {
-        Choice c = {.amount = {0}};
-        for (int l = 0; l < VPL_LANES; l++) {
-            if (points->triangle[l] >= 0) {
-                const double along = across[l] + k * GOLDEN;
-                chooseTriangle(&receiver, direct, l, (k + start[l]) / direct->trianglesPerPoint,
-                               along - floor(along), &c);
-            }
-        }
-        vplCastShadowRays(&receiver, c.way, false, c.amount);
-        for (int l = 0; l < VPL_LANES; l++) {
-            irradiance[0][l] += c.intensity[l].r * c.amount[l];
-            irradiance[1][l] += c.intensity[l].g * c.amount[l];
-            irradiance[2][l] += c.intensity[l].b * c.amount[l];
-        }
-    }
+    addChoices(&(vplReceiver){shading, points, &starts, rays}, direct,
+               &(Choosing){chooseTriangle, direct->trianglesPerPoint, 1}, irradiance);
 }

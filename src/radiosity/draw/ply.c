@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// What the file says of a vertex behind its position, which is of floats, or of doubles in a scene with an origin.
+// A vertex of the file but for its position, which comes first: three floats, or doubles in a scene with an origin.
 typedef struct PlyVertex {
     float normal[3];
     uint8_t code[3]; // sRGB
