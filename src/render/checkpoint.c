@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VERSION = 2, HEADER_BYTES = 104, CHECKSUM_BYTES = 8 };
+enum { VERSION = 3, HEADER_BYTES = 144, CHECKSUM_BYTES = 8 };
 
 // Arrays that a file may have.
 enum { PASSES = 1, PATHS = 2, DIRECT = 4 };
@@ -36,6 +36,10 @@ typedef struct Header {
     uint64_t unreviewed;      // vplRenderer.unreviewed
     double spread;            // spreadBefore of an unreviewed pass; negative: infinite
     double spent;             // rays of the plan under way
+    double turn[2];           // rays and pathSquare of vplRenderer.turn
+    uint64_t side;            // of vplRenderer.turn
+    uint32_t edges[2];        // edgePixels and edgePaths of vplRenderer
+    uint64_t tries;           // edgeTries of vplRenderer
 } Header;
 
 static void streamHeader(vplStream* s, Header* h)
@@ -54,6 +58,11 @@ static void streamHeader(vplStream* s, Header* h)
     vplStream_Long(s, &h->unreviewed);
     vplStream_Doubles(s, &h->spread, 1);
     vplStream_Doubles(s, &h->spent, 1);
+    vplStream_Doubles(s, h->turn, 2);
+    vplStream_Long(s, &h->side);
+    vplStream_Word(s, &h->edges[0]);
+    vplStream_Word(s, &h->edges[1]);
+    vplStream_Long(s, &h->tries);
 }
 
 // Bytes of the whole file.
@@ -183,7 +192,11 @@ static Header describe(const vplRenderer* r, const vplByteBuffer* text)
                 .loss = {r->runner.loss.lost, r->runner.loss.all},
                 .unreviewed = r->unreviewed,
                 .spread = r->unreviewed && isfinite(r->spreadBefore) ? r->spreadBefore : -1,
-                .spent = (double)r->runner.stats.rays - r->planRays};
+                .spent = (double)r->runner.stats.rays - r->planRays,
+                .turn = {r->turn.rays, r->turn.pathSquare},
+                .side = (uint64_t)r->turn.side,
+                .edges = {(uint32_t)r->edgePixels, (uint32_t)r->edgePaths},
+                .tries = (uint64_t)r->edgeTries};
     for (int i = 0; i < 1 + ((parts & DIRECT) != 0) && (parts & PATHS) != 0; i++) {
         vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
         h.samples = (uint32_t)vplPathTracer_GetSums(tracer).samples;
@@ -350,9 +363,11 @@ static vplResult checkRender(const Loading* l)
             l->path);
     }
     const bool truth = h->truth <= 1 << 16 && (h->truth == 0 || r->truth == NULL);
-    const bool counts = truth && h->rays[0] <= INT64_MAX / 4 && h->rays[1] <= INT64_MAX / 4 &&
-                        h->passes <= VPL_MAX_SAMPLES &&
-                        ((h->parts & PATHS) == 0 || (h->samples >= 1 && h->samples <= VPL_MAX_SAMPLES));
+    const bool counts =
+        truth && h->rays[0] <= INT64_MAX / 4 && h->rays[1] <= INT64_MAX / 4 && h->passes <= VPL_MAX_SAMPLES &&
+        h->side <= VPL_MAX_INTERLEAVE && h->tries <= VPL_MAX_SAMPLES && h->edges[0] <= VPL_MAX_EDGE_PIXELS &&
+        h->edges[1] <= VPL_MAX_SAMPLES && (h->edges[0] == 0 || (h->passes > 0 && h->edges[1] > 0)) &&
+        ((h->parts & PATHS) == 0 || (h->samples >= 1 && h->samples <= VPL_MAX_SAMPLES));
     const bool fits = h->width == (uint32_t)r->plan->options.output.width &&
                       h->height == (uint32_t)r->plan->options.output.height && sizeOf(h) == l->size;
     return counts && fits
@@ -429,8 +444,13 @@ static vplResult loadState(Loading* l)
     for (int k = 0; k < r->done && r->weight < 1e9; k++) {
         r->weight += vplShareOfPass(r->plan, k);
     }
+    r->edgeTries = (int)h->tries;
+    if (h->edges[0] > 0) { // made again, from the same picture
+        TRY(vplRenderer_TraceEdges(r, (int)h->edges[0], (int)h->edges[1]));
+    }
     r->stale = true;
     r->planRays = (double)r->runner.stats.rays - h->spent;
+    r->turn = (vplTurn){h->turn[0], h->turn[1], (int)h->side};
     r->unreviewed = h->unreviewed != 0 && r->done > 0;
     r->spreadBefore = r->unreviewed && h->spread >= 0 ? h->spread : INFINITY;
     return VPL_SUCCESS;

@@ -25,7 +25,9 @@ static const char* findObstacle(const vplRenderer* r)
                    vplPathsAreOpen(p) || (p->progressive && o->stop.passes <= 0)
                ? "a time or an error ends this picture, so its pieces are not known before; a number of them "
                  "has --passes N without --budget, --max-error and --quality, and by --method path --spp N"
-           : o->output.aovs != 0 ? "a picture in pieces has no layers: --aov must be none"
+           : o->path.edgePixels > 0 ? "pixels at edges are chosen from the whole picture: --edge-pixels must "
+                                      "be 0 for a picture in pieces"
+           : o->output.aovs != 0    ? "a picture in pieces has no layers: --aov must be none"
            : o->sequence.coherence == VPL_COHERENCE_ON && o->sequence.history != NULL
                ? "frames that depend on the one before are not made of pieces: --coherence must be off"
            : p->progressive && VPL_SHOWS[o->output.show].drawOver != NULL

@@ -64,6 +64,15 @@ static const char* refuseOptions(const vplPlan* p)
     if (o->output.aovs != 0 && show != VPL_SHOW_PICTURE) {
         return "--aov adds layers to the picture, not to what --show shows instead of it";
     }
+    if (o->path.edgePixels > 0 && (o->stop.passes <= 0 || o->stop.budgetMs > 0)) {
+        return "edge-pixels needs passes without a budget: they are chosen from the picture of all passes";
+    }
+    if (o->path.edgePixels > 0 &&
+        (show != VPL_SHOW_PICTURE || o->output.aovs != 0 || p->shading != VPL_LIGHTING_PHYSICAL)) {
+        return "edge-pixels replaces pixels of the whole picture by physical light: it goes with no other "
+               "--show, no --aov and no "
+               "--lighting documented";
+    }
     const bool map = p->emitterCount > 0 && p->emitters[0].type != VPL_EMITTER_DIRECTIONAL &&
                      !p->emitterRays && o->method != VPL_METHOD_SSVP;
     if ((show == VPL_SHOW_SHADOW_MAP || show == VPL_SHOW_SHADOW_FACTOR) && !map) {

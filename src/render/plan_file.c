@@ -133,6 +133,10 @@ vplResult vplPlan_Write(const vplPlan* plan, const vplScene* scene, const char* 
 // Replaces what ended the render by counts.
 static void fixEnd(const vplShown* shown, vplRenderOptions* o)
 {
+    if (shown->edgePixels > 0) {
+        o->path.edgePixels = shown->edgePixels;
+        o->path.edgePaths = shown->edgePaths;
+    }
     o->stop.quality = VPL_QUALITY_NONE;
     o->stop.budgetMs = o->stop.maxError = 0;
     if (o->method == VPL_METHOD_PATH) {

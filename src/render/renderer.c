@@ -22,6 +22,7 @@ static void forget(vplRenderer* r)
     vplFree(context, r->sums[0]);
     vplFree(context, r->sums[1]);
     vplPlan_Destroy(r->plan);
+    vplRenderer_ForgetEdges(r);
     r->base = r->direct = NULL;
     r->sums[0] = r->sums[1] = NULL;
     r->plan = NULL;
@@ -84,9 +85,14 @@ vplResult vplRenderer_Replace(vplRenderer* r, const vplRenderOptions* options, b
         vplImage_Destroy(image);
         return result;
     }
-    vplImage_Destroy(r->kept.image);
-    vplPlan_Destroy(r->kept.plan);
-    r->kept = (vplKeptPicture){image, r->plan, r->done, r->paths, error};
+    vplKeptPicture worse = {image, r->plan, r->done, r->paths, r->edgePixels, r->edgePaths, error};
+    if (r->kept.image == NULL || r->kept.error < 0 || error <= r->kept.error) {
+        const vplKeptPicture before = r->kept;
+        r->kept = worse;
+        worse = before;
+    }
+    vplImage_Destroy(worse.image);
+    vplPlan_Destroy(worse.plan);
     r->plan = NULL;
     beginPlan(r, &next, coarse);
     return VPL_SUCCESS;
@@ -160,6 +166,32 @@ void vplRenderer_Destroy(vplRenderer* r)
 bool vplRenderer_HasPicture(const vplRenderer* r)
 {
     return r->done > 0 || r->kept.image != NULL;
+}
+
+// ---- pixels at edges
+
+void vplRenderer_ForgetEdges(vplRenderer* r)
+{
+    vplEdges_Destroy(r->edges);
+    r->edges = NULL;
+    r->edgePixels = r->edgePaths = 0;
+}
+
+vplResult vplRenderer_TraceEdges(vplRenderer* r, int pixels, int paths)
+{
+    const double start = vplClockMs();
+    vplImage* image = NULL;
+    vplRenderer_ForgetEdges(r);
+    vplResult result = vplRenderer_Resolve(r, &image);
+    result =
+        result == VPL_SUCCESS ? vplEdges_Create(&r->runner.run, image, pixels, paths, &r->edges) : result;
+    vplImage_Destroy(image);
+    if (result == VPL_SUCCESS) {
+        r->edgePixels = pixels;
+        r->edgePaths = paths;
+    }
+    vplRun_AddTime(&r->runner.run, "edges", start);
+    return result;
 }
 
 // ---- passes
@@ -256,6 +288,7 @@ static vplResult runPass(vplRenderer* r)
     vplRun* run = &r->runner.run;
     run->pass = r->done;
     run->samples = vplNextPaths(r);
+    vplRenderer_ForgetEdges(r);
     if (r->plan->progressive) {
         return addPass(r);
     }
@@ -315,6 +348,7 @@ vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
     r->stale = false;
     r->passMs += vplClockMs() - begin;
     r->lastMs = vplClockMs() - begin - r->baseMs;
+    r->edgeTries = 0;
     r->done++;
     return review(r, doneOut);
 }

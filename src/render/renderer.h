@@ -4,6 +4,7 @@
 #define VPL_RENDER_RENDERER_H
 
 #include "render/plan.h"
+#include "render/planner/edges.h"
 #include "render/planner/truth.h"
 
 // The time of a ray of a path, with all that is computed for it, over that of a ray of a pass with virtual lights (room,
@@ -16,7 +17,8 @@ typedef struct vplKeptPicture {
     vplImage* image; // NULL: there is none
     vplPlan* plan;
     int passes, paths;
-    double error; // relative, noise and bias; negative: unknown
+    int edgePixels, edgePaths; // as of vplRenderer
+    double error;              // relative, noise and bias; negative: unknown
 } vplKeptPicture;
 
 // Relative errors of the picture; negative where they are unknown.
@@ -25,6 +27,13 @@ typedef struct vplErrorParts {
     double total;
     double bound; // the true error is below it in nineteen of twenty pictures
 } vplErrorParts;
+
+// The way that the planner would have gone if it had not begun path tracing.
+typedef struct vplTurn {
+    double rays;       // that it would have needed
+    double pathSquare; // squared relative error of path tracing times its rays: as foreseen, then as measured
+    int side;          // of the square of pixels that share virtual lights; 0: there is no other way
+} vplTurn;
 
 struct vplRenderer {
     vplRunner runner;
@@ -41,17 +50,20 @@ struct vplRenderer {
     // Layers: direct light alone, or where passes add up, the sum of what their lights on area lights send,
     // which `base` lacks; NULL: there is none.
     vplImage* direct;
-    int done;               // passes
-    int paths;              // path tracing: per pixel so far
-    bool stale;             // results of stages are not those of the last pass
-    double start, cpuStart; // ms
-    double planStart;       // ms, of the plan under way
-    double planRays;        // of all plans before it
-    double passMs;          // of all its passes
-    double baseMs, lastMs;  // of its last pass: time of direct light, and the rest
-    double deadline;        // ms; infinite: none
-    bool late;              // the deadline has ended a step
-    double watched;         // ms, when progress was last reported
+    int done;                  // passes
+    int paths;                 // path tracing: per pixel so far
+    vplEdges* edges;           // pixels that are path-traced; NULL: none
+    int edgePixels, edgePaths; // what they were made with, as of vplPathOptions; 0: there are none
+    int edgeTries;             // with the passes so far, that left more error than was asked for
+    bool stale;                // results of stages are not those of the last pass
+    double start, cpuStart;    // ms
+    double planStart;          // ms, of the plan under way
+    double planRays;           // of all plans before it
+    double passMs;             // of all its passes
+    double baseMs, lastMs;     // of its last pass: time of direct light, and the rest
+    double deadline;           // ms; infinite: none
+    bool late;                 // the deadline has ended a step
+    double watched;            // ms, when progress was last reported
     double gap; // ms, longest time between two reports: so much later a pass may end that is cancelled
     vplKeptPicture kept;
     bool
@@ -59,6 +71,7 @@ struct vplRenderer {
     vplTruth* truth;     // NULL: not asked yet
     vplJudgement judged; // of the last picture that the truth was asked about
     vplErrorParts error; // of the picture of all passes so far
+    vplTurn turn;        // where path tracing was begun
     double judgedNoise;  // noise when the truth was asked last
     double spreadBefore; // of the truth, before it was refined after the last pass; infinite: it was not
     bool unreviewed;     // the last pass is part of the picture, but vplReview was cancelled after it
@@ -88,6 +101,12 @@ vplResult vplRenderer_HashOptions(const vplRenderer* renderer, uint64_t* hashOut
 // Makes sums of passes, all 0.
 vplResult vplRenderer_OpenSums(vplRenderer* renderer);
 
+// Traces pixels at edges of the picture of all passes so far, instead of those that are traced. If it fails or is cancelled, none
+// is traced. The next pass forgets them.
+vplResult vplRenderer_TraceEdges(vplRenderer* renderer, int pixels, int paths);
+
+void vplRenderer_ForgetEdges(vplRenderer* renderer);
+
 // Makes the picture of all passes so far of the plan under way.
 vplResult vplRenderer_Resolve(vplRenderer* renderer, vplImage** imageOut);
 
@@ -98,6 +117,7 @@ bool vplRenderer_HasPicture(const vplRenderer* renderer);
 typedef struct vplShown {
     const vplPlan* plan;
     int passes, paths; // 0: there is no picture yet
+    int edgePixels, edgePaths;
 } vplShown;
 
 vplShown vplRenderer_Shown(const vplRenderer* renderer);
@@ -105,9 +125,21 @@ vplShown vplRenderer_Shown(const vplRenderer* renderer);
 // Compares the picture with the truth, which must be there, and fills in the renderer's error.
 void vplJudgePicture(vplRenderer* renderer, const vplImage* picture);
 
+// Compares the picture with the truth; traces more of it until the error is clear, or a third of `ms` is over. `plansAgain`: the next
+// plan depends on it, so that a few paths are not enough.
+vplResult vplJudge(vplRenderer* renderer, double asked, bool plansAgain, double ms);
+
+// Traces as many paths of the truth again as there are, and keeps the spread that it had.
+vplResult vplRefineTruth(vplRenderer* renderer);
+
 // After the truth was asked: goes on with another plan where that promises less error in the time that is left (asked is
 // 0), or the error in less time, and ends a render that more passes do not improve.
-vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut);
+// *moreOut: the truth is better known now, or pixels at edges are traced, so that the picture is to be judged again.
+vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
+
+// After a pass of path tracing that --method auto has chosen for an error: goes back to virtual lights where the noise of the
+// paths says that they need more rays.
+vplResult vplTurnBack(vplRenderer* renderer, double asked, bool* doneOut);
 
 // True if the options' count of passes or paths is reached.
 bool vplIsComplete(const vplRenderer* renderer);

@@ -15,12 +15,16 @@ static void estimateNoise(vplRenderer* r, const vplImage* image)
 {
     const size_t values = vplValueCount(image);
     double variance = 0, sum = 0;
+    double traced = 0;
     for (size_t k = 0; k < values && r->done > 1; k++) {
-        variance += fmax(0, r->sums[1][k] - r->sums[0][k] * r->sums[0][k] / r->weight);
+        const double paths = r->edges != NULL ? vplEdges_VarianceAt(r->edges, k / 3) : -1;
+        traced += fmax(0, paths);
+        variance += paths >= 0 ? 0 : fmax(0, r->sums[1][k] - r->sums[0][k] * r->sums[0][k] / r->weight);
         sum += (double)image->pixels[k];
     }
     if (r->done > 1) {
-        const double noise = sqrt(variance / (double)values / (r->done - 1) / r->weight);
+        const double noise =
+            sqrt(variance / (double)values / (r->done - 1) / r->weight + traced / (double)values);
         r->error.noise = sum > 0 ? noise * (double)values / sum : 0;
     }
 }
@@ -57,6 +61,9 @@ vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
     for (size_t k = 0; k < vplValueCount(r->base); k++) {
         const double mean = r->plan->progressive ? r->sums[0][k] / r->weight : 0;
         (*imageOut)->pixels[k] = (float)((double)r->base->pixels[k] + mean);
+    }
+    if (r->edges != NULL) {
+        vplEdges_Draw(r->edges, *imageOut);
     }
     if (r->plan->progressive) {
         estimateNoise(r, *imageOut);
@@ -111,8 +118,8 @@ vplShown vplRenderer_Shown(const vplRenderer* r)
 {
     const vplKeptPicture* kept = &r->kept;
     return kept->image != NULL && (r->showsKept || r->done == 0)
-               ? (vplShown){kept->plan, kept->passes, kept->paths}
-               : (vplShown){r->plan, r->done, r->paths};
+               ? (vplShown){kept->plan, kept->passes, kept->paths, kept->edgePixels, kept->edgePaths}
+               : (vplShown){r->plan, r->done, r->paths, r->edgePixels, r->edgePaths};
 }
 
 int vplRenderer_GetPassCount(const vplRenderer* r)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Where the error of a picture lies: one value for each block of 8x8 pixels.
 #include "reference/path_trace.h"
+#include "render/planner/contrast.h"
+#include "render/planner/edges.h"
 #include "render/renderer.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -25,6 +27,10 @@ static double noiseOf(const Map* m, size_t pixel, size_t c)
         const double difference = r->paths > 1 ? (sums[c] - sums[3 + c]) / half : 0;
         return 0.25 * difference * difference;
     }
+    const double traced = r->edges != NULL ? vplEdges_VarianceAt(r->edges, pixel) : -1;
+    if (traced >= 0) {
+        return traced;
+    }
     if (r->done < 2 || r->sums[0] == NULL) {
         return 0;
     }
@@ -32,18 +38,7 @@ static double noiseOf(const Map* m, size_t pixel, size_t c)
     return fmax(0, squares - sum * sum / r->weight) / (r->done - 1) / r->weight;
 }
 
-// Squared differences from the neighbours to the right and below, by which the bias of the whole picture is shared out:
-// most of it is at edges.
-static double contrastOf(const vplImage* image, int x, int y, size_t c)
-{
-    const size_t width = (size_t)image->width, at = 3 * ((size_t)y * width + (size_t)x) + c;
-    const double value = (double)image->pixels[at];
-    const double dx = x + 1 < image->width ? (double)image->pixels[at + 3] - value : 0;
-    const double dy = y + 1 < image->height ? (double)image->pixels[at + 3 * width] - value : 0;
-    return dx * dx + dy * dy;
-}
-
-// Means over a block: squared noise and contrast.
+// Means over a block: squared noise, and contrast, by which the bias of the whole picture is shared out.
 static void measureBlock(const Map* m, int column, int row, float* out)
 {
     const vplImage* p = m->picture;
@@ -53,7 +48,7 @@ static void measureBlock(const Map* m, int column, int row, float* out)
         for (int x = column * BLOCK; x < (column + 1) * BLOCK && x < p->width; x++) {
             for (size_t c = 0; c < 3; c++, count++) {
                 noise += noiseOf(m, (size_t)y * (size_t)p->width + (size_t)x, c);
-                contrast += contrastOf(p, x, y, c);
+                contrast += vplContrastOf(p, x, y, c); // most of the bias is at edges
             }
         }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // When a render ends, and which plan comes next: budgets, errors, and the planner's second thoughts.
 #include "base/clock.h"
+#include "render/planner/edge_steps.h"
 #include "render/planner/planner.h"
 #include "render/renderer.h"
 #include "render/show.h"
@@ -185,11 +186,10 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
     }
     const double mean = sum / (double)values, noise = fmax(0, r->error.noise) * mean;
     const double square = fmax(r->judged.square, noise * noise), bias = square - noise * noise;
-    // A bias that may be chance counts for less. Where the noise is unknown, the error is at least the spread of the truth.
-    const double doubt = bias > 0 ? r->judged.spread / bias : 0;
+    // Where the noise is unknown, the error is at least the spread of the truth.
     if (mean > 0) {
         r->judged.mean = mean; // better known than that of a few pixels of the truth
-        const double likely = noise * noise + bias * fmax(0, 1 - doubt * doubt);
+        const double likely = noise * noise + vplLikelyBias(bias, r->judged.spread);
         r->error.total = sqrt(r->error.noise < 0 ? fmax(likely, r->judged.spread) : likely) / mean;
         r->error.bound = sqrt(square + BOUND * r->judged.spread) / mean;
     } else {
@@ -210,8 +210,15 @@ static bool isClear(const vplRenderer* r, double asked, bool plansAgain, double 
            (double)r->judged.rays * VPL_PATH_RAY > 0.25 * spent;
 }
 
-// Compares the picture with the truth; traces more of it until the error is clear, or a third of `ms` is over.
-static vplResult judge(vplRenderer* r, double asked, bool plansAgain, double ms)
+vplResult vplRefineTruth(vplRenderer* r)
+{
+    const double spread = r->judged.spread;
+    TRY(vplTruth_Refine(&r->runner.run, r->truth));
+    r->spreadBefore = spread;
+    return VPL_SUCCESS;
+}
+
+vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
 {
     vplImage* image = NULL;
     vplRun* run = &r->runner.run;
@@ -225,9 +232,7 @@ static vplResult judge(vplRenderer* r, double asked, bool plansAgain, double ms)
         if (isClear(r, asked, plansAgain, r->spreadBefore) || vplClockMs() - start > ms / 3) {
             break;
         }
-        const double spread = r->judged.spread;
-        result = vplTruth_Refine(run, r->truth);
-        r->spreadBefore = result == VPL_SUCCESS ? spread : r->spreadBefore;
+        result = vplRefineTruth(r);
     }
     r->judgedNoise = r->error.noise;
     vplImage_Destroy(image);
@@ -246,18 +251,20 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
     TRY(result);
     if (r->plan->options.method == VPL_METHOD_PATH) {
         *doneOut = *doneOut || (r->error.bound >= 0 && r->error.bound <= asked);
-        return VPL_SUCCESS;
+        return *doneOut || r->paths < 2 ? VPL_SUCCESS : vplTurnBack(r, asked, doneOut);
     }
-    const bool again = r->judgedNoise <= 0 || r->error.noise < 0.8 * r->judgedNoise;
+    const bool again = r->judgedNoise <= 0 || r->error.noise < 0.8 * r->judgedNoise || r->edges != NULL;
     const bool early = r->done == 1 && asked >= EARLY_ERROR;
     const bool ready =
         !r->plan->progressive || early || (r->done >= 2 && (r->error.noise <= 0.9 * asked || r->done == 6));
-    if (ready && again) {
-        TRY(judge(r, asked, !early || !r->plan->progressive, INFINITY));
+    const bool decides = !early || !r->plan->progressive; // the first pass does not tell noise from bias
+    for (bool more = ready && again; more;) {
+        more = false;
+        TRY(vplJudge(r, asked, decides, INFINITY));
         if (r->error.bound <= asked) {
             *doneOut = true;
-        } else if (!early || !r->plan->progressive) { // the first pass does not tell noise from bias
-            return vplReconsider(r, asked, doneOut);
+        } else if (decides) {
+            TRY(vplReconsider(r, asked, doneOut, &more));
         }
     }
     return VPL_SUCCESS;
@@ -269,9 +276,10 @@ static vplResult reviewTime(vplRenderer* r, bool* doneOut)
 {
     const double budget = r->asked.stop.budgetMs;
     const bool asks = r->asked.method == VPL_METHOD_AUTO && r->plan->progressive && budget >= 300;
+    bool more;
     if (asks && r->truth == NULL && r->done >= 4 && leftOf(r) < 0.84 * budget && leftOf(r) > 0.3 * budget) {
-        TRY(judge(r, 0, true, budget / 30));
-        return vplReconsider(r, 0, doneOut);
+        TRY(vplJudge(r, 0, true, budget / 30));
+        return vplReconsider(r, 0, doneOut, &more);
     }
     return VPL_SUCCESS;
 }
@@ -307,6 +315,9 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     }
     const bool complete = vplIsComplete(r);
     *doneOut = complete;
+    if (complete && r->plan->options.path.edgePixels > 0) {
+        TRY(vplRenderer_TraceEdges(r, r->plan->options.path.edgePixels, r->plan->options.path.edgePaths));
+    }
     if (asked > 0 && vplShowsLight(r->asked.output.show)) {
         TRY(reviewError(r, asked, doneOut));
     } else if (vplShowsLight(r->asked.output.show)) {

@@ -2,7 +2,7 @@
 // Second thoughts: the noise and the bias of the picture so far say what more passes, a finer plan and path tracing would
 // cost. Costs are counted in rays and not in seconds, so that the same plan is chosen on every machine.
 #include "base/clock.h"
-#include "render/renderer.h"
+#include "render/planner/edge_steps.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,56 +20,141 @@ static const double LEAST_MORE = 0.56;
 
 // Squares of errors relative to the picture's mean, and rays.
 typedef struct State {
-    double noise, bias; // of the picture so far
+    double noise, bias; // of the picture so far; a bias that may be chance counts for less
+    double square;      // the whole estimate of the error, at least the noise
+    double spread;      // its standard error
     double spent;       // rays of its passes, which are in packets
+    double truth;       // rays of the truth
+    double path;        // rays of a path
     double paths;       // squared error of a picture by one ray's worth of paths
     int halvings;       // of the square of pixels that share lights, that are possible
+    bool stuck;         // more paths of the truth do not make its spread smaller
 } State;
+
+// The part of the truth's spread that is noise of its paths, about. Where it is most of it, the spread may grow with the paths
+// until the rare ones that carry much light are among them.
+static double noiseOfTruth(const vplRenderer* r)
+{
+    const double each = 0.5 * vplTruth_Paths(r->truth), count = vplTruth_CountPixels(r->truth);
+    return r->judged.pathVariance / each / sqrt(count);
+}
 
 static State stateOf(const vplRenderer* r)
 {
     const double noise = r->error.noise > 0 ? r->error.noise : 0, mean = r->judged.mean;
     const double pixels = (double)r->asked.output.width * r->asked.output.height;
+    const double pathSquare =
+        r->judged.pathVariance / (mean * mean) * r->judged.pathRays * VPL_PATH_RAY * pixels;
     State s = {.noise = noise * noise,
                .spent = fmax(1, (double)r->runner.stats.rays - r->planRays),
-               .paths = mean > 0 ? r->judged.pathVariance / (mean * mean) * r->judged.pathRays *
-                                       VPL_PATH_RAY * pixels
-                                 : INFINITY};
+               .paths = mean > 0 ? fmax(pathSquare, r->turn.pathSquare) : INFINITY};
     const bool refines =
         r->plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && r->asked.pipeline.interleave < 0;
     for (int side = r->plan->options.pipeline.interleave; refines && side > 2; side /= 2) {
         s.halvings++;
     }
     s.bias = fmax(0, r->error.total * r->error.total - s.noise);
+    s.square = mean > 0 ? fmax(r->judged.square / (mean * mean), s.noise) : 0;
+    s.spread = mean > 0 ? r->judged.spread / (mean * mean) : 0;
+    s.truth = VPL_PATH_RAY * (double)r->judged.rays;
+    s.path = VPL_PATH_RAY * r->judged.pathRays;
+    s.stuck = r->judged.spread > 0.85 * r->spreadBefore && r->judged.spread > 3 * noiseOfTruth(r);
     return s;
 }
 
-// ---- rays that each way needs for an error
+// ---- ways to an error
 
-static double toFinish(const State* s, double square)
+// With fewer paths through a pixel their noise is not known.
+static const double FEWEST_EDGE_PATHS = 32;
+
+// Passes, of this plan or of one whose lights are shared by fewer pixels, then paths through pixels at edges, then paths of the
+// truth that prove the error.
+typedef struct Way {
+    double rays;   // of all
+    int halvings;  // of the square of pixels that share lights
+    double passes; // over those that are done: 1 is no more
+    int pixels, paths;
+} Way;
+
+// Rays of paths of the truth until one and a half standard errors are as small as `margin`.
+static double proofOf(const State* s, double spread, double margin)
 {
-    const double left = square - s->bias;
-    return left > 0 ? s->spent * fmax(LEAST_MORE, s->noise / left - 1) : INFINITY;
+    const double times = 1.5 * spread / margin;
+    return times <= 1 ? 0 : s->stuck ? INFINITY : s->truth * (times - 1);
 }
 
-// *halvingsOut: of the square of pixels that share lights.
-static double toRefine(const State* s, double square, int* halvingsOut)
+// The least rays for passes and paths: N / m + V / n is `left`, and a m + c n least, for m times the passes and n paths.
+static Way wayOf(const State* s, const vplEdgeStep* step, int halvings, double square)
 {
-    double least = INFINITY, bias = s->bias, spent = s->spent;
-    *halvingsOut = 1;
-    for (int k = 1; k <= s->halvings; k++) {
+    Way way = {INFINITY, halvings, 0, step->pixels, 0};
+    double bias = step->bias, each = s->spent;
+    for (int k = 0; k < halvings; k++) {
         bias *= FINER_BIAS;
-        spent *= FINER_COST;
-        const double rays = square > bias ? spent * s->noise / (square - bias) : INFINITY;
-        *halvingsOut = rays < least ? k : *halvingsOut;
-        least = fmin(least, rays);
+        each *= FINER_COST;
     }
-    return least;
+    const double left = square - bias, cost = step->pixels * s->path;
+    if (!(left > 0)) {
+        return way;
+    }
+    const double both = sqrt(each * step->noise) + sqrt(cost * step->variance);
+    way.passes = sqrt(step->noise / each) * both / left;
+    if (halvings == 0) {
+        way.passes = way.passes > 1       ? fmax(way.passes, 1 + LEAST_MORE)
+                     : step->noise < left ? 1
+                                          : 1 + LEAST_MORE;
+    }
+    const double rest = left - step->noise / way.passes;
+    const double paths = step->pixels == 0 ? 0
+                         : rest > 0        ? fmax(FEWEST_EDGE_PATHS, ceil(step->variance / rest))
+                                           : INFINITY;
+    if (paths < VPL_MAX_SAMPLES) {
+        way.paths = (int)paths;
+        way.rays = each * (way.passes - (halvings == 0)) + cost * paths;
+    }
+    return way;
 }
 
-static double toTrace(const State* s, double square)
+// Tries several shares of the error: the lower it is, the sooner it is proven.
+static Way bestWayOf(const State* s, const vplEdgeStep* step, int halvings, double asked)
 {
-    return s->paths / square;
+    static const double SHARES[] = {0.9, 0.75, 0.6, 0.45, 0.3};
+    Way best = {.rays = INFINITY};
+    for (int i = 0; i < 5; i++) {
+        const double square = SHARES[i] * asked * asked;
+        Way way = wayOf(s, step, halvings, square);
+        way.rays += proofOf(s, step->spread, asked * asked - square);
+        best = way.rays < best.rays ? way : best;
+    }
+    return best;
+}
+
+enum { MOST_TRIES = 2 };
+
+// Each try that failed leaves a smaller share of the error for the next one.
+static const double SHARE_OF_TRY = 0.7;
+
+static vplResult findWay(vplRenderer* r, const State* s, double asked, Way* wayOut)
+{
+    const vplRenderOptions* o = &r->asked;
+    const vplEdgeStep none = {0, s->noise, s->bias, s->spread, 0};
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    int count = 0;
+    double forEdges = asked;
+    *wayOut = (Way){.rays = INFINITY};
+    if (r->plan->progressive && o->output.show == VPL_SHOW_PICTURE && o->output.aovs == 0 &&
+        o->path.edgePixels == 0 && r->edgeTries < MOST_TRIES) {
+        TRY(vplFindEdgeSteps(r, steps, &count));
+    }
+    for (int i = 0; i < r->edgeTries; i++) {
+        forEdges *= SHARE_OF_TRY;
+    }
+    for (int k = 0; k <= s->halvings; k++) {
+        for (int i = -1; i < count; i++) {
+            const Way way = bestWayOf(s, i < 0 ? &none : &steps[i], k, i < 0 ? asked : forEdges);
+            *wayOut = way.rays < wayOut->rays ? way : *wayOut;
+        }
+    }
+    return VPL_SUCCESS;
 }
 
 // ---- the next plan
@@ -88,6 +173,7 @@ static vplResult trace(vplRenderer* r, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
     o.method = VPL_METHOD_PATH;
+    r->turn = (vplTurn){0};
     return goOnWith(r, "path tracing", &o, doneOut);
 }
 
@@ -116,25 +202,103 @@ static vplResult addLights(vplRenderer* r, bool* doneOut)
     return goOnWith(r, "reflected light", &o, doneOut);
 }
 
-// The way that needs least for the error.
-static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneOut)
+// Paths that need so many times the rays of the way that they were preferred to are given up. Rare paths that carry much light
+// are not among the first, so that the paths of the truth may promise too much.
+static const double GIVE_UP = 1.5;
+
+vplResult vplTurnBack(vplRenderer* r, double asked, bool* doneOut)
 {
-    const double square = 0.9 * asked * asked;
+    const double spent = VPL_PATH_RAY * (double)r->runner.stats.rays; // of the paths alone
+    const double pathSquare = r->error.noise * r->error.noise * spent,
+                 needed = pathSquare / (asked * asked) - spent;
+    if (r->asked.method != VPL_METHOD_AUTO || r->turn.side == 0 || needed < GIVE_UP * r->turn.rays) {
+        return VPL_SUCCESS;
+    }
+    vplLog(r->runner.run.context, VPL_LOG_INFO,
+           "after %d paths per pixel the noise is %.3g %%, more than foreseen: goes back to virtual lights "
+           "that %d pixels share",
+           r->paths, 100 * r->error.noise, r->turn.side * r->turn.side);
+    vplRenderOptions o = r->asked;
+    o.pipeline.interleave = r->turn.side;
+    r->turn = (vplTurn){0, pathSquare, 0};
+    *doneOut = false;
+    return vplRenderer_Replace(r, &o, false, r->error.total);
+}
+
+// ---- the decision
+
+// The truth is known well enough for a decision where its standard error is this share of the squared error that was asked for;
+// and more paths of it are not worth it where they would cost more than this share of what is foreseen.
+static const double KNOWN = 0.1, WORTH = 0.1;
+
+// Pixels at edges are traced. More paths of the truth may prove that the error is met; else the picture is as before.
+static vplResult proveEdges(vplRenderer* r, const State* s, double asked, bool* moreOut)
+{
+    const double left = asked * asked - s->square, most = s->spent + s->path * r->edgePixels * r->edgePaths;
+    *moreOut = true;
+    if (left > 0 && proofOf(s, s->spread, left) < most) {
+        return vplRefineTruth(r);
+    }
+    vplLog(r->runner.run.context, VPL_LOG_INFO,
+           "%d paths through each of %d pixels at edges leave an error of about %.3g %%, which is not enough",
+           r->edgePaths, r->edgePixels, 100 * r->error.total);
+    vplRenderer_ForgetEdges(r);
+    r->edgeTries++;
+    return VPL_SUCCESS;
+}
+
+static vplResult traceEdges(vplRenderer* r, const Way* way, bool* moreOut)
+{
+    vplLog(r->runner.run.context, VPL_LOG_INFO,
+           "after %d passes the noise is %.3g %% and the error about %.3g %%: traces %d paths through each "
+           "of %d pixels at edges",
+           r->done, 100 * fmax(0, r->error.noise), 100 * r->error.total, way->paths, way->pixels);
+    *moreOut = true;
+    return vplRenderer_TraceEdges(r, way->pixels, way->paths);
+}
+
+// Begins path tracing. Where paths need more rays than foreseen, it turns back to `way`, without the passes that are done.
+static vplResult tracePaths(vplRenderer* r, const State* s, const Way* way, bool* doneOut)
+{
+    const double rays = way->rays + (way->halvings == 0 ? s->spent : 0);
+    const int side = r->plan->options.pipeline.interleave >> way->halvings;
+    const bool turns = isfinite(rays) && r->plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED;
+    TRY(trace(r, doneOut));
+    r->turn = (vplTurn){turns ? rays : 0, s->paths, turns ? side : 0};
+    return VPL_SUCCESS;
+}
+
+// The way that needs least for the error.
+static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneOut, bool* moreOut)
+{
+    Way way;
     if (r->plan->progressive && r->done < SURE_PASSES && r->error.total < 2 * asked) {
         return VPL_SUCCESS;
     }
-    State upper = *s;
-    // Where the error is low enough and its bound is not, the bound does not come much closer to it.
-    if (r->error.total <= asked && vplTruth_Paths(r->truth) >= VPL_SURE_PATHS) {
-        upper.bias = fmax(s->bias, r->error.bound * r->error.bound - s->noise);
+    if (r->edges != NULL) {
+        return proveEdges(r, s, asked, moreOut);
     }
-    int halvings;
-    const double finish = toFinish(&upper, square), finer = toRefine(&upper, square, &halvings),
-                 paths = toTrace(s, square);
-    if (paths < finish && paths < finer) {
-        return trace(r, doneOut);
+    TRY(findWay(r, s, asked, &way));
+    const double paths = s->paths / (0.9 * asked * asked);
+    const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck;
+    if (unknown && s->truth < WORTH * fmin(way.rays, paths)) {
+        *moreOut = true;
+        return vplRefineTruth(r);
     }
-    return finer < finish ? refine(r, halvings, doneOut) : VPL_SUCCESS;
+    if (paths < way.rays) {
+        return tracePaths(r, s, &way, doneOut);
+    }
+    if (way.halvings > 0) {
+        return refine(r, way.halvings, doneOut);
+    }
+    if (way.passes > 1 || isinf(way.rays)) {
+        return VPL_SUCCESS;
+    }
+    if (way.pixels > 0) {
+        return traceEdges(r, &way, moreOut);
+    }
+    *moreOut = true; // the error is met, but not proven
+    return vplRefineTruth(r);
 }
 
 // The least squared error for the rays that the time is enough for.
@@ -152,14 +316,14 @@ static vplResult spend(vplRenderer* r, const State* s, bool* doneOut)
     return finer < 0.8 * finish ? refine(r, 1, doneOut) : VPL_SUCCESS;
 }
 
-vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut)
+vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut, bool* moreOut)
 {
     const State s = stateOf(r);
     if (r->asked.method == VPL_METHOD_AUTO && r->plan->options.method == VPL_METHOD_DIRECT) {
         return addLights(r, doneOut);
     }
     if (r->asked.method == VPL_METHOD_AUTO) {
-        return asked > 0 ? reach(r, &s, asked, doneOut) : spend(r, &s, doneOut);
+        return asked > 0 ? reach(r, &s, asked, doneOut, moreOut) : spend(r, &s, doneOut);
     }
     if (asked > 0 && s.bias > asked * asked && s.noise < 0.1 * s.bias) {
         snprintf(r->ended, sizeof r->ended,

@@ -5,6 +5,7 @@
 
 #include "base/rng.h"
 #include "reference/sparse_paths.h"
+#include "render/planner/contrast.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
@@ -27,22 +28,6 @@ struct vplTruth {
 
 // ---- which pixels
 
-// The largest difference of a value from those of the right and the lower neighbour, squared and summed.
-static double contrastOf(const vplImage* image, int x, int y)
-{
-    const size_t width = (size_t)image->width, at = 3 * ((size_t)y * width + (size_t)x);
-    const size_t right = x + 1 < image->width ? at + 3 : at,
-                 below = y + 1 < image->height ? at + 3 * width : at;
-    double sum = 0;
-    for (size_t c = 0; c < 3; c++) {
-        const double value = (double)image->pixels[at + c];
-        const double dx = (double)image->pixels[right + c] - value,
-                     dy = (double)image->pixels[below + c] - value;
-        sum += dx * dx + dy * dy;
-    }
-    return sum;
-}
-
 // A third of the pixels is chosen evenly, a third by contrast, a third by its square, because errors at edges are about
 // proportional to it and few pixels have most of it.
 typedef struct Shares {
@@ -54,7 +39,7 @@ static Shares sharesOf(const vplImage* image)
     double linear = 0, square = 0;
     for (int y = 0; y < image->height; y++) {
         for (int x = 0; x < image->width; x++) {
-            const double contrast = contrastOf(image, x, y);
+            const double contrast = vplContrastOfPixel(image, x, y);
             linear += sqrt(contrast);
             square += contrast;
         }
@@ -72,7 +57,7 @@ static int choosePixels(vplTruth* t, const vplImage* image, int wanted, double o
     int count = 0;
     for (int y = 0; y < image->height; y++) {
         for (int x = 0; x < image->width; x++) {
-            const double contrast = contrastOf(image, x, y);
+            const double contrast = vplContrastOfPixel(image, x, y);
             const double expected =
                 fmin(1, wanted * (shares.even + shares.linear * sqrt(contrast) + shares.square * contrast));
             const double before = floor(sum - offset);
@@ -176,23 +161,38 @@ static double errorOf(const vplSparsePixel* p, const float* values, double each,
     return error;
 }
 
+vplTruthPixel vplTruth_GetPixel(const vplTruth* t, const vplImage* picture, int i)
+{
+    const vplSparsePixel* p = &t->pixels[i];
+    const double each = t->paths.done;
+    const float* values = picture->pixels + 3 * ((size_t)p->y * (size_t)picture->width + (size_t)p->x);
+    vplTruthPixel out = {.x = p->x, .y = p->y};
+    double mean;
+    out.square = t->weights[i] * errorOf(p, values, each, &mean);
+    out.mean = t->weights[i] * mean;
+    const double square =
+        (p->sums[0].r * p->sums[1].r + p->sums[0].g * p->sums[1].g + p->sums[0].b * p->sums[1].b) / 3;
+    out.pathVariance = t->weights[i] * (p->squares / (2 * each) - square / (each * each));
+    return out;
+}
+
+int vplTruth_CountPixels(const vplTruth* t)
+{
+    return t->paths.count;
+}
+
 vplJudgement vplTruth_Judge(const vplTruth* t, const vplImage* picture)
 {
     vplJudgement j = {0};
     const double each = t->paths.done, count = t->paths.count;
     double squares = 0;
     for (int i = 0; i < t->paths.count; i++) {
-        const vplSparsePixel* p = &t->pixels[i];
-        const float* values = picture->pixels + 3 * ((size_t)p->y * (size_t)picture->width + (size_t)p->x);
-        double mean;
-        const double error = t->weights[i] * errorOf(p, values, each, &mean);
-        const double square =
-            (p->sums[0].r * p->sums[1].r + p->sums[0].g * p->sums[1].g + p->sums[0].b * p->sums[1].b) / 3;
-        j.square += error;
-        squares += error * error;
-        j.mean += t->weights[i] * mean;
-        j.pathVariance += t->weights[i] * (p->squares / (2 * each) - square / (each * each));
-        j.rays += p->rays;
+        const vplTruthPixel p = vplTruth_GetPixel(t, picture, i);
+        j.square += p.square;
+        squares += p.square * p.square;
+        j.mean += p.mean;
+        j.pathVariance += p.pathVariance;
+        j.rays += t->pixels[i].rays;
     }
     j.spread =
         count > 1 ? sqrt(fmax(0, squares - j.square * j.square / count) * count / (count - 1)) : INFINITY;

@@ -46,6 +46,19 @@ enum { VPL_SURE_PATHS = 64 };
 
 int vplTruth_Paths(const vplTruth* truth);
 
+// A pixel of the truth, for a picture of the same size. Sums over all of them are estimates for the whole picture.
+typedef struct vplTruthPixel {
+    int x, y;
+    double
+        square; // mean square error of its values, times the pixels of the picture that it stands for over all
+    double mean;         // of its true values, times the same
+    double pathVariance; // of one path, times the same
+} vplTruthPixel;
+
+vplTruthPixel vplTruth_GetPixel(const vplTruth* truth, const vplImage* picture, int index);
+
+int vplTruth_CountPixels(const vplTruth* truth);
+
 // The error of a picture of the same size.
 vplJudgement vplTruth_Judge(const vplTruth* truth, const vplImage* picture);
 

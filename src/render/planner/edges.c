@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "render/planner/edges.h"
+
+#include "reference/sparse_paths.h"
+#include "render/planner/contrast.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+
+#include <math.h>
+#include <string.h>
+
+static const uint64_t SEED = 0x6564676573; // differs from that of pictures and of the truth
+
+struct vplEdges {
+    vplSparsePaths paths;
+    vplSparsePixel* pixels;
+    int32_t* places; // of each pixel of the picture: its index in `pixels`, or -1
+    vplArena* arena; // owns all
+};
+
+// ---- which pixels
+
+int vplContrastBin(const vplImage* image, int x, int y)
+{
+    const float contrast = (float)vplContrastOfPixel(image, x, y);
+    uint32_t bits;
+    memcpy(&bits, &contrast, sizeof bits);
+    return (int)(bits >> 19);
+}
+
+// The lowest bin that is taken, and the count of pixels from there on. Pixels without contrast are no edges.
+static int chooseBin(const vplImage* picture, int most, int* countOut)
+{
+    int counts[VPL_CONTRAST_BINS] = {0}, bin = VPL_CONTRAST_BINS;
+    for (int y = 0; y < picture->height; y++) {
+        for (int x = 0; x < picture->width; x++) {
+            counts[vplContrastBin(picture, x, y)]++;
+        }
+    }
+    *countOut = 0;
+    while (bin > 1 && counts[bin - 1] <= most - *countOut) {
+        *countOut += counts[--bin];
+    }
+    return bin;
+}
+
+static void choosePixels(vplEdges* e, const vplImage* picture, int bin)
+{
+    int count = 0;
+    for (int y = 0; y < picture->height; y++) {
+        for (int x = 0; x < picture->width; x++) {
+            const bool chosen = vplContrastBin(picture, x, y) >= bin;
+            e->places[(size_t)y * (size_t)picture->width + (size_t)x] = chosen ? count : -1;
+            if (chosen) {
+                e->pixels[count++] = (vplSparsePixel){.x = x, .y = y};
+            }
+        }
+    }
+}
+
+// ---- their paths
+
+static vplResult traceEdges(const vplRun* run, const vplImage* picture, int most, int paths, vplEdges* e)
+{
+    int count;
+    const int bin = chooseBin(picture, most, &count);
+    e->pixels = vplArena_AllocZero(e->arena, (size_t)count, sizeof *e->pixels);
+    e->places = vplArena_Alloc(e->arena, (size_t)picture->width * (size_t)picture->height, sizeof *e->places);
+    TRY(vplArena_Check(e->arena));
+    choosePixels(e, picture, bin);
+    vplPathDef def = vplDescribePaths(run->plan, VPL_SHOW_PICTURE);
+    def.seed ^= SEED;
+    TRY(vplSparsePaths_Init(&e->paths, run->results[VPL_STAGE_GEOMETRY], &def, e->pixels, count));
+    const vplResult result = vplSparsePaths_Trace(&e->paths, (paths + 1) / 2,
+                                                  (vplProgressRange){run->progress, run->runner, 0, 1});
+    vplSparsePaths_Free(&e->paths);
+    return result;
+}
+
+vplResult vplEdges_Create(const vplRun* run, const vplImage* picture, int most, int paths,
+                          vplEdges** edgesOut)
+{
+    vplArena* arena = vplArena_Create(run->context);
+    vplEdges* e = vplArena_AllocZero(arena, 1, sizeof *e);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        e->arena = arena;
+        result = traceEdges(run, picture, most, paths, e);
+    }
+    return vplArena_Deliver(arena, result, e, edgesOut);
+}
+
+void vplEdges_Destroy(vplEdges* edges)
+{
+    vplArena_Destroy(edges != NULL ? edges->arena : NULL);
+}
+
+// ---- the picture
+
+void vplEdges_Draw(const vplEdges* e, vplImage* picture)
+{
+    const double paths = 2.0 * e->paths.done;
+    for (int i = 0; i < e->paths.count; i++) {
+        const vplSparsePixel* p = &e->pixels[i];
+        float* values = picture->pixels + 3 * ((size_t)p->y * (size_t)picture->width + (size_t)p->x);
+        values[0] = (float)((p->sums[0].r + p->sums[1].r) / paths);
+        values[1] = (float)((p->sums[0].g + p->sums[1].g) / paths);
+        values[2] = (float)((p->sums[0].b + p->sums[1].b) / paths);
+    }
+}
+
+double vplEdges_VarianceAt(const vplEdges* e, size_t pixel)
+{
+    const int32_t place = e->places[pixel];
+    if (place < 0) {
+        return -1;
+    }
+    const vplSparsePixel* p = &e->pixels[place];
+    const double r = p->sums[0].r - p->sums[1].r, g = p->sums[0].g - p->sums[1].g,
+                 b = p->sums[0].b - p->sums[1].b;
+    const double paths = 2.0 * e->paths.done;
+    return (r * r + g * g + b * b) / 3 / (paths * paths);
+}
