@@ -1,8 +1,8 @@
 #!/bin/sh
 # The golden pictures by every compiler, level of optimisation, number of threads and instruction set: prints a table of how
 # many of them have the recorded bits. Fails unless all have. What the machine lacks is "-".
-# tests/determinism.sh [NAME...]: default gcc clang aarch64, where the compilers and qemu are installed. LEVELS, THREADS and
-# PLAIN=0 (no rows without OpenMP) in the environment make the table shorter. Unoptimised code is ten times as slow: -O0 has
+# tests/determinism.sh [NAME...]: default gcc clang aarch64, where the compilers and qemu are installed. LEVELS, THREADS,
+# SETS and PLAIN=0 (no rows without OpenMP) in the environment make the table shorter. Unoptimised code is ten times as slow: -O0 has
 # a row for SLOW_THREADS only, with SLOW_SETS, and none without OpenMP; cells that are left out are empty. JOBS processors
 # compile.
 levels=${LEVELS:-3 2 0}
@@ -12,6 +12,7 @@ slow_sets=${SLOW_SETS:-scalar avx2}
 plain=${PLAIN:-1}
 names=${*:-gcc clang aarch64}
 sets="scalar sse2 avx2 avx512"
+kinds=${SETS:-$sets}
 failed=0
 runner=
 jobs=${JOBS:-$(nproc)}
@@ -30,14 +31,14 @@ cell() {
 
 # row NAME THREADS SETS MAKE-VARIABLES...: builds a configuration and prints a row for each number of threads.
 row() {
-    name=$1 counts=$2 kinds=$3
+    name=$1 counts=$2 chosen=$3
     shift 3
     make -j"$jobs" --no-print-directory BUILD="build/determinism/$name" "$@" "build/determinism/$name/vpl-golden" \
         >"build/determinism/$name.log" 2>&1 || { echo "| $name | not built, see build/determinism/$name.log |"; failed=1; return; }
     for count in $counts; do
         line="| $name | $count |"
         for kind in $sets; do
-            case " $kinds " in *" $kind "*) ;; *) line="$line  |"; continue ;; esac
+            case " $chosen " in *" $kind "*) ;; *) line="$line  |"; continue ;; esac
             got=$(cell "$name" "$count" "$kind")
             case $got in *differ* | "") failed=1 ;; esac
             line="$line $got |"
@@ -55,8 +56,8 @@ for level in $levels; do
             row "$compiler-O0" "$slow_threads" "$slow_sets" CC="$compiler" CFLAGS="-O0"
             continue
         fi
-        row "$compiler-O$level" "$threads" "$sets" CC="$compiler" CFLAGS="-O$level"
-        [ "$plain" -eq 0 ] || row "$compiler-O$level-plain" 1 "$sets" CC="$compiler" CFLAGS="-O$level" OPENMP=0 EXR=0
+        row "$compiler-O$level" "$threads" "$kinds" CC="$compiler" CFLAGS="-O$level"
+        [ "$plain" -eq 0 ] || row "$compiler-O$level-plain" 1 "$kinds" CC="$compiler" CFLAGS="-O$level" OPENMP=0 EXR=0
     done
 done
 case " $names " in *" aarch64 "*) ;; *) exit $failed ;; esac

@@ -102,3 +102,10 @@ vplScene* loadGltf(Desk* d, const char* name)
     unlink(deskPath(d, name));
     return scene;
 }
+
+void assertAround(double value, double wanted, double tolerance)
+{
+    if (!(fabs(value - wanted) <= tolerance)) {
+        fail_msg("%.9g instead of %.9g", value, wanted);
+    }
+}

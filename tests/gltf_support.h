@@ -25,4 +25,18 @@ vplScene* loadGltf(Desk* desk, const char* name);
 // Writes the path of a file in the desk's folder.
 const char* deskPath(const Desk* desk, const char* name);
 
+// The parts of a file with one triangle, and its corners.
+#define TRIANGLE                                                                                             \
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{"               \
+    "\"bufferView\":0,\"componentType\":"                                                                    \
+    "5126,\"count\":3,\"type\":\"VEC2\"}"
+
+#define VIEWS "],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}"
+
+static const float POINTS[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+
+#define NODES_HEAD "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+
+void assertAround(double value, double wanted, double tolerance);
+
 #endif

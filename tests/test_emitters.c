@@ -348,6 +348,39 @@ TEST(WithoutBiasSurfacesShadowThemselvesAndAWarningSaysSo, 1)
     vplScene_Destroy(scene);
 }
 
+// With a radius of a 128th of the scene's size the shadow of the plate is gone.
+TEST(AWideGroundDoesNotBlurTheShadowsOfSmallThings, 1)
+{
+    enum { SIZE = 64 };
+    vplScene* scene = sceneOf(context, 0.5f);
+    addLevel(scene, vplVec(0, 0, 0), 400, false, 0);
+    addLevel(scene, vplVec(0, 0.5f, 0), 1, false, 0);
+    lookDown(scene, 4, 0.3);
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(3, 2, 0), (vplVec3){0, 0, 0}, 3);
+    int dark[2] = {0, 0};
+    double off = 0, sum = 0;
+    vplImage* images[2];
+    for (int rays = 0; rays < 2; rays++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        o.method = VPL_METHOD_DIRECT;
+        o.output.width = o.output.height = SIZE;
+        o.lights.shadows = rays ? VPL_LIGHT_SHADOWS_RAY : VPL_LIGHT_SHADOWS_MAP;
+        images[rays] = renderScene(scene, &o, NULL);
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            dark[rays] += images[rays]->pixels[3 * i] == 0;
+        }
+    }
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        off += fabs((double)images[0]->pixels[3 * i] - (double)images[1]->pixels[3 * i]);
+        sum += (double)images[1]->pixels[3 * i];
+    }
+    assert_true(dark[1] > 50 && dark[0] > 0.8 * dark[1] && dark[0] < 1.05 * dark[1]);
+    assert_true(off > 0 && off < 0.005 * sum);
+    vplImage_Destroy(images[0]);
+    vplImage_Destroy(images[1]);
+    vplScene_Destroy(scene);
+}
+
 // ---- a sample of the emitters
 
 enum { LAMPS = 100 };

@@ -316,7 +316,7 @@ TEST_ALONE(PrimitivesBecomeOneMeshWithTheirMaterials)
 
 // ---- nodes
 
-#define TRIANGLE                                                                                             \
+#define PLACED_TRIANGLE                                                                                      \
     "\"meshes\":[{\"name\":\"tri\",\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{"    \
     "\"bufferView\":0,"                                                                                      \
     "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":"  \
@@ -352,7 +352,7 @@ TEST_ALONE(PartsMatricesAndParentsGiveTheSamePlace)
     Desk d;
     openDesk(&d);
     for (int i = 0; i < 3; i++) {
-        writeGltf(deskPath(&d, "a.gltf"), &blob, "\"nodes\":[%s]," TRIANGLE, nodes[i]);
+        writeGltf(deskPath(&d, "a.gltf"), &blob, "\"nodes\":[%s]," PLACED_TRIANGLE, nodes[i]);
         vplScene* scene = loadGltf(&d, "a.gltf");
         assertPlace(&vplScene_GetObject(scene, 0)->transform, wanted);
         vplScene_Destroy(scene);
@@ -366,11 +366,11 @@ TEST_ALONE(NodesShareTheirMesh)
     const Blob blob = triangleBlob();
     Desk d;
     openDesk(&d);
-    writeGltf(
-        deskPath(&d, "a.glb"), &blob,
-        "\"scene\":1,\"scenes\":[{\"nodes\":[3]},{\"nodes\":[0,2]}],\"nodes\":[{\"mesh\":0,\"name\":"
-        "\"first\",\"children\":["
-        "1]},{\"mesh\":0,\"translation\":[0,5,0]},{\"mesh\":0,\"scale\":[-1,1,1]},{\"mesh\":0}]," TRIANGLE);
+    writeGltf(deskPath(&d, "a.glb"), &blob,
+              "\"scene\":1,\"scenes\":[{\"nodes\":[3]},{\"nodes\":[0,2]}],\"nodes\":[{\"mesh\":0,\"name\":"
+              "\"first\",\"children\":["
+              "1]},{\"mesh\":0,\"translation\":[0,5,0]},{\"mesh\":0,\"scale\":[-1,1,1]},{\"mesh\":0}]"
+              "," PLACED_TRIANGLE);
     vplScene* scene = loadGltf(&d, "a.glb");
     assert_int_equal(vplScene_GetMeshCount(scene), 1);
     assert_string_equal(vplScene_GetObject(scene, 0)->name, "first");
@@ -391,7 +391,7 @@ TEST_ALONE(AGlbFileIsTheSameScene)
     for (int i = 0; i < 2; i++) {
         const char* name = i ? "a.glb" : "a.gltf";
         writeGltf(deskPath(&d, name), &blob,
-                  "\"nodes\":[{\"mesh\":0,\"rotation\":[0.1,0.2,0.3,0.4]}]," TRIANGLE);
+                  "\"nodes\":[{\"mesh\":0,\"rotation\":[0.1,0.2,0.3,0.4]}]," PLACED_TRIANGLE);
         vplScene* scene = loadGltf(&d, name);
         hashes[i] = vplScene_GetHash(scene);
         vplScene_Destroy(scene);
@@ -411,8 +411,9 @@ TEST_ALONE(BuffersMayBeFilesBeside)
     FILE* file = fopen(bin, "wb");
     fwrite(blob.bytes, 1, blob.size, file);
     fclose(file);
-    writeText(deskPath(&d, "a.gltf"), "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,"
-                                      "\"uri\":\"a%20b.bin\"}],\"nodes\":[{\"mesh\":0}]," TRIANGLE "}");
+    writeText(deskPath(&d, "a.gltf"),
+              "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,"
+              "\"uri\":\"a%20b.bin\"}],\"nodes\":[{\"mesh\":0}]," PLACED_TRIANGLE "}");
     vplScene* scene = loadGltf(&d, "a.gltf");
     assertPoint(meshCorner(vplScene_GetMesh(scene, 0), 0, 2), 1, 1, 0);
     vplScene_Destroy(scene);
@@ -434,7 +435,7 @@ TEST_ALONE(AGltfFileIsAMeshOfASceneFile)
         "\"nodes\":[{\"mesh\":0,\"translation\":[1,0,0]},{\"mesh\":0,\"translation\":[0,1,0],\"extensions\":{"
         "\"KHR_lights_punctual\":{\"light\":0}}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{"
         "\"type\":"
-        "\"point\"}]}}," TRIANGLE);
+        "\"point\"}]}}," PLACED_TRIANGLE);
     writeText(json, "{\"camera\":{\"eye\":[0,0,5],\"target\":[0,0,0]},\"materials\":{\"own\":{}},\"objects\":"
                     "[{\"type\":\"mesh\","
                     "\"file\":\"a.glb\",\"scale\":2,\"translate\":[0,0,7]},{\"type\":\"mesh\",\"file\":\"a."

@@ -2,6 +2,7 @@
 // Tests of pictures: files, tone mapping, comparison. Covers extremes X109 to X112.
 #include "test.h"
 
+#include "base/context.h"
 #include "image/srgb.h"
 
 #include <float.h>
@@ -199,6 +200,18 @@ TEST(PfmKeepsEveryBit, 1)
     unlink(path);
     vplImage_Destroy(image);
     vplImage_Destroy(back);
+}
+
+TEST(APfmFileIsMadeWithoutCopiesOfIt, 1)
+{
+    vplImage* image = makeImage(context, 256, 200);
+    const size_t before = context->bytes, size = sizeof(vplRgb) * 256 * 200;
+    context->peakBytes = before;
+    const char* path = temporaryName(".pfm");
+    assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
+    assert_true(context->peakBytes >= before + size && context->peakBytes < before + size + 8192);
+    unlink(path);
+    vplImage_Destroy(image);
 }
 
 TEST(HdrKeepsAPercentAndPngKeepsCodes, 1)

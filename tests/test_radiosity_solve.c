@@ -286,6 +286,44 @@ TEST(ResidualsEndIt, 1)
     freeExchange(&e);
 }
 
+// A sweep of a bright closed room changes little, and so do very many: the warning says how much they would add.
+TEST(LightThatIsMissingIsSaid, 1)
+{
+    static const struct {
+        float rho;
+        double residual;
+        const char* words;
+    } cases[] = {{0.99f, 1e-4, "radiosity ended after 100 sweeps with a residual of 0.00"},
+                 {0.999f, 1e-6, "radiosity ended after 100 sweeps with a residual of 0.00"},
+                 {0.99f, 1e-2, "radiosity ended with a residual of 0.00"},
+                 {0.5f, 1e-4, NULL},
+                 {0.5f, 1e-2, NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Exchange e;
+        openCube(&e, context, cases[i].rho);
+        vplRgb source[6], b[6];
+        for (int k = 0; k < 6; k++) {
+            source[k] = grey(1);
+        }
+        vplSolveDef def = sweeps(VPL_SOLVER_JACOBI, 100);
+        def.residual = cases[i].residual;
+        takeMessage();
+        const vplSolveStats stats = solve(&e, &def, source, b);
+        const char* warning = takeMessage();
+        if (cases[i].words == NULL) {
+            assert_string_equal(warning, "");
+        } else { // after n sweeps of equal light everywhere rho^n of it is missing
+            assert_memory_equal(warning, cases[i].words, strlen(cases[i].words));
+            const double left = pow((double)cases[i].rho, stats.iterations + 1),
+                         said = 100 * left / (1 - left);
+            const char* another = strstr(warning, "another ");
+            assert_non_null(another);
+            assertRatio(atof(another + strlen("another ")), said, 0.1, "share", (int)i);
+        }
+        freeExchange(&e);
+    }
+}
+
 // ---- bits
 
 static uint64_t solveHash(vplContext* context)

@@ -242,16 +242,20 @@ vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes,
     return result;
 }
 
+void vplByteBuffer_Reserve(vplByteBuffer* buffer, size_t size)
+{
+    buffer->failed = buffer->failed || vplReserve(buffer->context, &buffer->bytes, &buffer->capacity,
+                                                  buffer->size + size, 1) != VPL_SUCCESS;
+}
+
 void vplByteBuffer_Append(vplByteBuffer* buffer, const void* bytes, size_t size)
 {
-    if (buffer->failed || size == 0) {
+    if (size == 0) {
         return;
     }
-    if (vplReserve(buffer->context, &buffer->bytes, &buffer->capacity, buffer->size + size, 1) !=
-        VPL_SUCCESS) {
-        buffer->failed = true;
-        return;
+    vplByteBuffer_Reserve(buffer, size);
+    if (!buffer->failed) {
+        memcpy(buffer->bytes + buffer->size, bytes, size);
+        buffer->size += size;
     }
-    memcpy(buffer->bytes + buffer->size, bytes, size);
-    buffer->size += size;
 }

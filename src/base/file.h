@@ -30,6 +30,9 @@ typedef struct vplByteBuffer {
     bool failed; // out of memory: later appends do nothing
 } vplByteBuffer;
 
+// Takes memory for `size` more bytes, so that appending them does not copy what is there.
+void vplByteBuffer_Reserve(vplByteBuffer* buffer, size_t size);
+
 void vplByteBuffer_Append(vplByteBuffer* buffer, const void* bytes, size_t size);
 
 #endif

@@ -23,8 +23,10 @@ vplResult vplEncodePfm(const vplImage* image, const vplWriteOptions* options, vp
     (void)options;
     char header[64];
     int length = snprintf(header, sizeof header, "PF\n%d %d\n-1.0\n", image->width, image->height);
-    vplByteBuffer_Append(buffer, header, (size_t)length);
     size_t rowFloats = 3 * (size_t)image->width;
+    // A buffer that grew row by row would hold 5 GB more at 16384 x 16384 pixels.
+    vplByteBuffer_Reserve(buffer, (size_t)length + 4 * rowFloats * (size_t)image->height);
+    vplByteBuffer_Append(buffer, header, (size_t)length);
     uint8_t* row = vplAlloc(image->context, rowFloats, 4);
     if (row == NULL) {
         return VPL_OUT_OF_MEMORY;
