@@ -23,6 +23,7 @@ failed=0
 
 . "$folder/support.sh"
 . "$folder/usage.sh"
+. "$folder/completion.sh"
 . "$folder/scenes.sh"
 . "$folder/files.sh"
 . "$folder/numbers.sh"
