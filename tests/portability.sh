@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds the library, program, unit tests and golden pictures for other machines and runs them there or in an emulator: all
-# golden pictures must have the recorded bits. tests/portability.sh [TARGET...]: default musl i386 s390x; mingw does not build yet. Installs what
+# golden pictures must have the recorded bits. tests/portability.sh [TARGET...]: default musl i386 s390x mingw. Installs what
 # is missing, as root; a target whose compiler or libraries cannot be had is skipped with a sentence. tests/portability.md
 # has the results, and the reasons for what is left out. VPL_GOLDEN_ONLY=1 leaves out the unit tests.
 here=build/portability
@@ -55,7 +55,7 @@ from_sources() {
             apt-get "$@" update && apt-get "$@" source --download-only jansson cmocka &&
                 for archive in *.orig.tar.?z; do tar xf "$archive" || exit 1; done
         } || exit 1
-        cp jansson-*/src/jansson.h cmocka-*/include/cmocka.h /usr/include/jansson_config.h "$root/include/" &&
+        cp jansson-*/src/jansson.h cmocka-*/include/cmocka*.h /usr/include/jansson_config.h "$root/include/" &&
             cp -r /usr/include/stb/. "$root/include/stb/" && : >"$root/include/jansson_private_config.h" || exit 1
         mkdir -p "$root/jansson" && cd "$root/jansson" || exit 1
         "$compiler" -O2 -DHAVE_STDINT_H -DHAVE_SYS_TIME_H -DHAVE_SYS_TYPES_H -DHAVE_UNISTD_H -DHAVE_FCNTL_H \
@@ -71,24 +71,25 @@ from_sources() {
 count() {
     name=$1
     shift
-    "$@" >"$here/log" 2>&1
+    "$@" >"$here/$target.tests" 2>&1
     code=$?
-    line=$(tr -d '\r' <"$here/log" | grep -E '^[0-9]+ passed, [0-9]+ failed$' | tail -n 1)
+    line=$(tr -d '\r' <"$here/$target.tests" | grep -E '^[0-9]+ passed, [0-9]+ failed$' | tail -n 1)
     good=$(echo "$line" | sed -n 's/ passed.*//p')
     bad=$(echo "$line" | sed -n 's/.*, \([0-9]*\) failed/\1/p')
     [ -n "$line" ] && { [ "$code" -eq 0 ] || [ "$bad" -ne 0 ]; } || bad=$((${bad:-0} + 1)) # it died
     passed=$((passed + ${good:-0}))
     failed=$((failed + bad))
     echo "$name: ${good:-0} passed, $bad failed"
-    [ "$bad" -eq 0 ] || grep -aE 'FAILED|ERROR|LINE|^not ok|rror' "$here/log" | head -n 30
+    [ "$bad" -eq 0 ] || grep -aE 'FAILED|ERROR|LINE|^not ok|rror' "$here/$target.tests" | head -n 30
 }
 
-# run NAME RUNNER SUFFIX "TESTS" MAKE-VARIABLES...: builds a target and runs what was built.
+# run NAME RUNNER SUFFIX "TESTS" MAKE-VARIABLES...: builds a target and runs what was built. RUNNER "none" only builds.
 run() {
     target=$1 runner=$2 suffix=$3 tests=$4 build=build/portability/$1
     shift 4
-    if ! make -j"$jobs" --no-print-directory BUILD="$build" "$@" "$build/libvpl.a" "$build/vpl" "$build/vpl-tests" \
-        "$build/vpl-golden" >"$here/$target.log" 2>&1; then
+    [ -n "$VPL_GOLDEN_ONLY" ] || set -- "$@" "$build/vpl-tests"
+    if ! make -j"$jobs" --no-print-directory BUILD="$build" "$@" "$build/libvpl.a" "$build/vpl" "$build/vpl-golden" \
+        >"$here/$target.log" 2>&1; then
         echo "$target: not built, see build/portability/$target.log"
         grep -m 5 -E 'rror|undefined' "$here/$target.log"
         failed=$((failed + 1))
@@ -96,9 +97,7 @@ run() {
     fi
     warnings=$(grep -c 'warning:' "$here/$target.log")
     echo "$target: built, $warnings warnings"
-    [ -n "$runner" ] || return
-    [ "$runner" != native ] || runner=
-    $runner "$build/vpl$suffix" --version
+    [ "$runner" != none ] || return
     count "$target golden pictures" $runner "$build/vpl-golden$suffix" check golden "$build/golden"
     [ -n "$VPL_GOLDEN_ONLY" ] || count "$target unit tests" $runner "$build/vpl-tests$suffix" --quick $tests
 }
@@ -106,51 +105,66 @@ run() {
 # musl has no OpenEXR and its gcc no OpenMP.
 musl() {
     { install musl-tools && from_sources musl musl-gcc; } || { skip musl "it needs musl-tools and the sources of jansson and cmocka"; return; }
-    run musl native "" "-memory -Threads" CC=musl-gcc OPENMP=0 EXR=0 CFLAGS="-O1 -isystem $here/musl-root/include -isystem $here/musl-root/include/stb" \
+    run musl "" "" "$WHOLE" CC=musl-gcc OPENMP=0 EXR=0 CFLAGS="-O1 -isystem $here/musl-root/include -isystem $here/musl-root/include/stb" \
         LDLIBS="-L$here/musl-root/lib -ljansson -lm"
 }
 
 # Suites of files, hashes and arithmetic: what a machine's byte order and word size can change.
 FILES="image exr ply ply_read gltf gltf_scene files math obj obj_parts textures layers scene hits TheHashOfTheCallersView -Threads"
+# All quick tests but those of failing allocations, which check_all.sh runs, and of one picture by many numbers of threads.
+WHOLE="-memory -Threads -Everywhere"
 
-# The kernel may be unable to run programs of 32 bits: qemu always is.
+# Most kernels of x86-64 run programs of 32 bits: then the whole suite can be run, else what is quick enough in qemu.
 i386() {
     architecture i386
-    { install gcc-i686-linux-gnu qemu-user-static libjansson-dev:i386 libcmocka-dev:i386 libgomp1:i386 && unpack_exr i386; } ||
-        { skip i386 "it needs gcc-i686-linux-gnu, qemu-user-static and Debian's i386 libraries"; return; }
-    emulated i386 i386-linux-gnu i686-linux-gnu-gcc ""
+    { install gcc-i686-linux-gnu libc6-dev-i386-cross libjansson-dev:i386 libcmocka-dev:i386 libgomp1:i386 && unpack_exr i386; } ||
+        { skip i386 "it needs gcc-i686-linux-gnu and Debian's i386 libraries"; return; }
+    if echo 'int main(void) { return 0; }' | i686-linux-gnu-gcc -x c - -o "$here/i386-probe" && "$here/i386-probe"; then
+        foreign i386 i386-linux-gnu "env LD_LIBRARY_PATH=" "$WHOLE" i686-linux-gnu-gcc OPENMP=1
+    elif install qemu-user-static; then
+        foreign i386 i386-linux-gnu "qemu-i386-static -E LD_LIBRARY_PATH=" "$FILES" i686-linux-gnu-gcc OPENMP=1
+    else
+        skip i386 "the kernel runs no program of 32 bits, and there is no qemu-user-static"
+    fi
 }
 
 s390x() {
     architecture s390x
-    { install gcc-s390x-linux-gnu qemu-user-static libjansson-dev:s390x libcmocka-dev:s390x && unpack_exr s390x; } ||
+    { install gcc-s390x-linux-gnu libc6-dev-s390x-cross qemu-user-static libjansson-dev:s390x libcmocka-dev:s390x &&
+        unpack_exr s390x; } ||
         { skip s390x "it needs gcc-s390x-linux-gnu, qemu-user-static and Debian's s390x libraries"; return; }
-    emulated s390x s390x-linux-gnu s390x-linux-gnu-gcc OPENMP=0
+    foreign s390x s390x-linux-gnu "qemu-s390x-static -L /usr/s390x-linux-gnu -E LD_LIBRARY_PATH=" "$FILES" s390x-linux-gnu-gcc OPENMP=0
 }
 
-# emulated NAME TRIPLET COMPILER MAKE-VARIABLE
-emulated() {
+# foreign NAME TRIPLET RUNNER-UP-TO-LIBRARY-PATH TESTS COMPILER MAKE-VARIABLE
+foreign() {
     root=$here/$1-root
-    run "$1" "qemu-$1-static -E LD_LIBRARY_PATH=$root/usr/lib/$2:$root/lib/$2" "" "$FILES" CC="$3" $4 EXR=1 \
-        CFLAGS="-O1 -isystem $root/usr/include" LDLIBS="-L/usr/lib/$2 -L$root/usr/lib/$2 -Wl,-rpath-link,$root/lib/$2 -ljansson -lOpenEXRCore -lm"
+    run "$1" "$3$root/usr/lib/$2:$root/lib/$2:/usr/lib/$2" "" "$4" CC="$5" "$6" EXR=1 CFLAGS="-O1 -isystem $root/usr/include" \
+        LDLIBS="-L/usr/lib/$2 -L$root/usr/lib/$2 -Wl,-rpath-link,$root/lib/$2 -ljansson -lOpenEXRCore -lm"
 }
 
+# Windows. Wine runs its programs; the folder that wine makes is removed in the end.
 mingw() {
     cross=x86_64-w64-mingw32
-    { install mingw-w64 && from_sources mingw $cross-gcc; } || { skip mingw "it needs mingw-w64 and the sources of jansson and cmocka"; return; }
+    { install gcc-mingw-w64-x86-64-win32 && from_sources mingw $cross-gcc; } ||
+        { skip mingw "it needs gcc-mingw-w64-x86-64-win32 and the sources of jansson and cmocka"; return; }
     install wine64
-    wine=
-    for name in wine64 wine /usr/lib/wine/wine64; do
-        [ -n "$wine" ] || wine=$(command -v $name)
+    wine=none
+    for name in /usr/lib/wine/wine64 wine64 wine; do
+        [ "$wine" != none ] || wine=$(command -v "$name" || echo none)
     done
-    [ -n "$wine" ] || echo "mingw: built only, wine64 cannot be installed"
-    export WINEDEBUG=-all
-    run mingw "$wine" .exe "image math obj obj_parts hits scene" CC=$cross-gcc OPENMP=0 EXR=0 \
+    [ "$wine" != none ] || echo "mingw: built only, wine64 cannot be installed"
+    export WINEDEBUG=-all WINEPREFIX="$here/wine"
+    run mingw "$wine" .exe "$WHOLE" CC=$cross-gcc OPENMP=0 EXR=0 \
         CFLAGS="-O1 -isystem $here/mingw-root/include -isystem $here/mingw-root/include/stb" \
-        LDLIBS="-L$here/mingw-root/lib -ljansson -lm"
+        LDLIBS="-L$here/mingw-root/lib -ljansson -lpthread -lm"
+    for server in /usr/lib/wine/wineserver64 wineserver; do
+        ! command -v "$server" >/dev/null || { "$server" -k; break; }
+    done
+    rm -rf "$WINEPREFIX"
 }
 
-for name in ${*:-musl i386 s390x}; do
+for name in ${*:-musl i386 s390x mingw}; do
     case $name in
     musl | i386 | s390x | mingw) $name ;;
     *) echo "tests/portability.sh: no target $name; there are musl, i386, s390x and mingw" >&2; exit 2 ;;

@@ -30,6 +30,12 @@ echo '#include "render/render.h"' >"$scratch/tree/src/math/bad.c"
 check LayersIncludeOnlyTheLayersBelow tests/check_layers.sh
 check LayerCheckCatchesAWrongInclude refuses tests/check_layers.sh "$scratch/tree"
 
+# Windows takes these names for devices, whatever the extension.
+no_name_is_a_device() {
+    ! git ls-files | grep -iE '(^|/)(nul|con|aux|prn|com[0-9]|lpt[0-9])(\.|/|$)|[:*?"<>|\\]'
+}
+check NoFileHasTheNameOfAWindowsDevice no_name_is_a_device
+
 # windows.h defines near, far, small and interface as macros.
 windows="-Dnear= -Dfar= -Dsmall=char -Dinterface=struct"
 for header in include/vpl/*.h; do

@@ -14,6 +14,7 @@ static const char* temporaryName(const char* extension)
     return name;
 }
 
+#ifndef _WIN32 // whose users may not make symbolic links
 TEST(ADanglingLinkIsNotReplaced, 1)
 {
     const char* path = temporaryName(".txt");
@@ -24,6 +25,7 @@ TEST(ADanglingLinkIsNotReplaced, 1)
     assert_int_equal(readlink(path, target, sizeof target), strlen("/tmp/vpl-files-nothing"));
     unlink(path);
 }
+#endif
 
 // ---- sentences
 

@@ -97,13 +97,24 @@ static vplResult readFromMemory(vplContext* context, const vplMemoryFile* file, 
     return VPL_SUCCESS;
 }
 
+static int openToRead(const char* path)
+{
+#ifdef _WIN32
+    if (strcmp(path, "/dev/stdin") == 0) {
+        _setmode(STDIN_FILENO, O_BINARY);
+        return dup(STDIN_FILENO);
+    }
+#endif
+    return open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe may have no writer yet
+}
+
 vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut)
 {
     const vplMemoryFile* held = findInMemory(context, path);
     if (held != NULL) {
         return readFromMemory(context, held, bytesOut, sizeOut);
     }
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe may have no writer yet
+    int fd = openToRead(path);
     if (fd < 0) {
         return vplFail(context, VPL_FILE_ERROR, "%s: cannot open: %s", path, strerror(errno));
     }
@@ -144,9 +155,19 @@ const char* vplBaseName(const char* path)
     return slash != NULL ? slash + 1 : path;
 }
 
+static bool isAbsolute(const char* path, size_t length)
+{
+#ifdef _WIN32
+    if (length > 0 && (path[0] == '\\' || (length > 1 && path[1] == ':'))) {
+        return true;
+    }
+#endif
+    return length > 0 && path[0] == '/';
+}
+
 char* vplPathBeside(vplContext* context, const char* from, const char* name, size_t length)
 {
-    size_t folder = length > 0 && name[0] == '/' ? 0 : (size_t)(vplBaseName(from) - from);
+    size_t folder = isAbsolute(name, length) ? 0 : (size_t)(vplBaseName(from) - from);
     char* path = vplAlloc(context, folder + length + 1, 1);
     if (path != NULL) {
         memcpy(path, from, folder);
@@ -156,13 +177,16 @@ char* vplPathBeside(vplContext* context, const char* from, const char* name, siz
     return path;
 }
 
+// Bytes that one call of write() is given: Linux writes less than 2^31, and Windows takes their number as an unsigned int.
+enum { MOST_WRITTEN = 1 << 30 };
+
 // Writes and closes; on failure errno tells why.
 static bool writeAndClose(int fd, const void* bytes, size_t size, bool flush)
 {
     const char* at = bytes;
     bool written = true;
     while (written && size > 0) {
-        ssize_t put = write(fd, at, size);
+        ssize_t put = write(fd, at, size < MOST_WRITTEN ? (unsigned)size : MOST_WRITTEN);
         written = put > 0 || (put < 0 && errno == EINTR);
         at += put > 0 ? put : 0;
         size -= put > 0 ? (size_t)put : 0;

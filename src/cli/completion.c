@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-// Files are what an option takes whose value is written in capitals as one word.
+// Files are what an option takes whose value is written as FILE, FILE|R,G,B, FILES or DIR.
 static bool takesFile(const Option* o)
 {
-    return o->value != NULL && (strcmp(o->value, "FILE") == 0 || strcmp(o->value, "DIR") == 0);
+    return o->value != NULL && (strncmp(o->value, "FILE", 4) == 0 || strcmp(o->value, "DIR") == 0);
 }
 
 // Prints the choices of "a|b|c", with spaces between; nothing for other values, such as N.
@@ -95,7 +95,7 @@ static void printFish(void)
                o->value == NULL ? ""
                : takesFile(o)   ? " -r"
                                 : " -x");
-        if (o->value != NULL && strchr(o->value, '|') != NULL) {
+        if (o->value != NULL && strchr(o->value, '|') != NULL && !takesFile(o)) {
             printf(" -a '");
             printChoices(o);
             putchar('\'');
@@ -113,6 +113,8 @@ bool printCompletion(const char* shell)
     } else if (strcmp(shell, "zsh") == 0) {
         puts("#compdef vpl\nautoload -U +X bashcompinit && bashcompinit");
         printBash();
+        // zsh reads the file of a completion at the first Tab and expects what it offers.
+        puts("[ \"${funcstack[1]}\" != _vpl ] || _bash_complete -o default -F _vpl");
     } else if (strcmp(shell, "fish") == 0) {
         printFish();
     } else {

@@ -30,6 +30,9 @@ int main(int count, char** words)
 {
     signal(SIGPIPE, SIG_IGN); // writing to a closed pipe then fails, and is reported
     signal(SIGXFSZ, SIG_IGN); // so is writing beyond the file size limit
+#ifdef _WIN32
+    _setmode(STDOUT_FILENO, O_BINARY); // pictures go there, too
+#endif
     const char* word = count > 1 ? words[1] : NULL;
     if (word == NULL) {
         complain("no command; vpl help lists them");

@@ -59,7 +59,7 @@ void vplAssembly_Destroy(vplAssembly* a)
     }
 }
 
-static vplResult open(vplAssembly* a, const vplPieceHeader* h)
+static vplResult startPicture(vplAssembly* a, const vplPieceHeader* h)
 {
     const vplPieceGrid* g = &h->grid;
     vplContext* c = a->context;
@@ -174,7 +174,7 @@ vplResult vplAssembly_Add(vplAssembly* a, const uint8_t* bytes, size_t size, con
     vplPieceHeader h;
     const bool opens = a->first.grid.count == 0;
     TRY(vplPiece_Read(a->context, bytes, size, name, &h));
-    vplResult result = opens ? open(a, &h) : checkSame(a, &h, name);
+    vplResult result = opens ? startPicture(a, &h) : checkSame(a, &h, name);
     if (result == VPL_SUCCESS && !vplAssembly_Has(a, h.index)) {
         result = take(a, &h, bytes, name);
     }

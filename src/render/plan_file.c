@@ -106,7 +106,7 @@ static Writer describe(const vplScene* scene, const vplPlan* p, const vplRenderO
     return w;
 }
 
-static vplResult write(vplContext* context, Writer w, const char* path)
+static vplResult writePlan(vplContext* context, Writer w, const char* path)
 {
     char* text = w.failed ? NULL : json_dumps(w.json, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     json_decref(w.json);
@@ -127,7 +127,7 @@ vplResult vplPlan_Write(const vplPlan* plan, const vplScene* scene, const char* 
 {
     REQUIRE(vplScene_GetContext(scene), plan, scene, path);
     const vplRenderOptions o = vplReplayOptions(plan);
-    return write(vplScene_GetContext(scene), describe(scene, plan, &o, (Writer){NULL, false}), path);
+    return writePlan(vplScene_GetContext(scene), describe(scene, plan, &o, (Writer){NULL, false}), path);
 }
 
 // Replaces what ended the render by counts.
@@ -166,7 +166,7 @@ vplResult vplRenderer_WritePlan(vplRenderer* r, const char* path)
     if (stats.relativeErrorEstimate >= 0) {
         put(&used, "relative_error_estimate", json_real(stats.relativeErrorEstimate));
     }
-    return write(vplScene_GetContext(scene), describe(scene, shown.plan, &o, used), path);
+    return writePlan(vplScene_GetContext(scene), describe(scene, shown.plan, &o, used), path);
 }
 
 // ---- reading

@@ -118,7 +118,7 @@ static vplResult readModel(vplGltf* g, bool whole, vplModel* model)
     return VPL_SUCCESS;
 }
 
-static vplResult read(vplGltf* g, bool whole, vplModel* model)
+static vplResult readFile(vplGltf* g, bool whole, vplModel* model)
 {
     TRY(vplArena_Check(g->scratch));
     g->prefix = vplScene_MakePrefix(g->scene, g->path, g->scratch);
@@ -136,7 +136,7 @@ vplResult vplScene_ReadGltf(vplScene* scene, const char* path, bool whole, vplMo
                  .scratch = scratch,
                  .path = path,
                  .names = {.index = {.arena = scratch}}};
-    const vplResult result = read(&g, whole, model);
+    const vplResult result = readFile(&g, whole, model);
     vplGltf_Close(&g);
     vplArena_Destroy(scratch);
     if (result != VPL_SUCCESS) { // what was added is freed with the scene

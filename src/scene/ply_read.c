@@ -283,7 +283,7 @@ static vplResult readElements(Reader* r)
     return VPL_SUCCESS;
 }
 
-static vplResult read(Reader* r, vplRawMesh* out)
+static vplResult readFile(Reader* r, vplRawMesh* out)
 {
     r->polygon = vplArena_Alloc(r->scratch, 1, sizeof *r->polygon);
     TRY(vplArena_Check(r->scratch));
@@ -309,5 +309,5 @@ vplResult vplReadPly(vplText* bytes, vplArena* scratch, int material, vplRawMesh
     r->context = bytes->context;
     r->scratch = scratch;
     r->material = material;
-    return read(r, out);
+    return readFile(r, out);
 }

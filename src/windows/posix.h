@@ -11,20 +11,30 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <time.h>
 
 // ---- files
 
-// Files are opened as they are on disk: without O_BINARY, bytes 13 are lost and a byte 26 ends the file.
-#define open(path, ...)        open(path, O_BINARY | __VA_ARGS__)
-#define O_CLOEXEC              O_NOINHERIT
+// Every open() of libvpl has this flag. Files are opened as they are on disk: without O_BINARY, bytes 13 are lost and a byte 26
+// ends the file.
+#define O_CLOEXEC              (O_NOINHERIT | O_BINARY)
 #define O_NONBLOCK             0
 #define fsync(file)            _commit(file)
 #define lstat(path, info)      stat(path, info)
 #define mkdir(path, mode)      _mkdir(path)
 #define realpath(path, buffer) _fullpath(buffer, path, 0)
+
+// Names of folders end at either slash.
+#define strrchr(text, mark) vplWindows_FindLast(text, mark)
+static inline char* vplWindows_FindLast(const char* text, int mark)
+{
+    char* slash = (strrchr)(text, mark);
+    char* back = mark == '/' ? (strrchr)(text, '\\') : NULL;
+    return slash == NULL || (back != NULL && back > slash) ? back : slash;
+}
 
 // access() of Windows refuses to be asked whether a folder can be entered; all can.
 #undef X_OK

@@ -173,30 +173,8 @@ refuses GrowingPassesNeedAnEnd 2 "grow-from needs passes, budget or max-error" \
 # ---- shells
 
 wrong "did you mean info?" inf
-wrong "completion is for bash, zsh or fish" completion tcsh
 wrong "one picture without layers" render "$room" -o - --frames 0:2
 wrong "only -o writes to standard output" render "$room" -o "$png" --stats -
-# completes WANTED WORDS...: bash offers WANTED, a word, for the last word of a command line.
-completes() {
-    wanted=$1
-    shift
-    bash -c '. "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _vpl; printf "%s\n" "${COMPREPLY[@]}"' "$scratch/completion" "$@" |
-        grep -qx -- "$wanted"
-}
-for shell in bash zsh fish; do
-    succeeds "Completion_${shell}_IsPrinted" "$vpl" completion $shell
-    cp "$scratch/stdout" "$scratch/completion-$shell"
-done
-cp "$scratch/completion-bash" "$scratch/completion"
-if command -v bash >/dev/null; then
-    check CompletionKnowsCommands completes render vpl re
-    check CompletionKnowsOptions completes --particles vpl render a.json --part
-    check CompletionKnowsChoices completes keller vpl render --method kel
-    check CompletionKnowsShells completes fish vpl completion f
-fi
-for shell in zsh fish; do # where they are installed
-    ! command -v $shell >/dev/null || check "Completion_${shell}_IsRead" $shell -n "$scratch/completion-$shell"
-done
 
 # ---- standard input and output
 
