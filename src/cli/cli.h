@@ -199,6 +199,10 @@ int writeWholePicture(const Arguments* arguments, vplImage* image);
 bool checkTile(const Arguments* arguments);
 int renderTile(const Arguments* arguments, vplScene* scene);
 
+// vpl bake: an exit code after complaining of its options; bakes.
+int checkBake(const Arguments* arguments);
+int bakeScene(const Arguments* arguments, vplScene* scene);
+
 // Writes the file name of frame `number` of frames up to `last`: "-0012" before the extension, at least four
 // digits. last < 0: the name itself. Returns false if it does not fit.
 bool numberName(const char* name, int number, int last, char* out, size_t size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// vpl-mpi: vpl render for many machines. All ranks parse the same words; only rank 0 complains of them.
+// vpl-mpi: vpl render and vpl bake for many machines. All ranks parse the same words; only rank 0 complains of them.
 #include "mpi/ranks.h"
 
 #include <mpi.h>
@@ -10,8 +10,10 @@
 
 static const char USAGE[] =
     "mpirun -n N vpl-mpi render SCENE -o FILE [options of vpl render] [options of vpl-mpi]\n"
+    "mpirun -n N vpl-mpi bake SCENE -o FILE.ply [options of vpl bake]\n"
     "mpirun -n 2 vpl-mpi --ping-pong\n\n"
-    "Renders a picture by pieces, or the frames of --frames, with the bits of vpl render for any N.\n"
+    "Renders a picture by pieces, or the frames of --frames, with the bits of vpl render for any N. For --method radiosity\n"
+    "and for bake the ranks share the rows of form factors, so that N machines hold N times as many.\n"
     "  --checkpoint FILE   append finished pieces to FILE, which vpl merge reads, too; of --frames a list\n"
     "  --resume FILE       go on with it, with any N\n"
     "  --grace SECONDS     after SIGTERM what is under way may take so long; default 5\n"
@@ -64,7 +66,7 @@ static bool takeOptions(int* count, const char** words, MpiOptions* o)
 }
 
 // Complains of what pieces and frames do not have.
-static int check(const Arguments* a)
+static int checkRender(const Arguments* a)
 {
     static const char* const OTHERS[] = {"tile",    "aov",     "plan-out",   "error-map",
                                          "explain", "dry-run", "no-partial", "checkpoint-every"};
@@ -99,7 +101,7 @@ static int check(const Arguments* a)
     return good ? EXIT_DONE : EXIT_COULD_NOT;
 }
 
-static int render(Ranks* r)
+static int work(Ranks* r, bool bakes)
 {
     vplContext* context = openContext(r->arguments);
     vplScene* scene = NULL;
@@ -111,7 +113,9 @@ static int render(Ranks* r)
         if (r->rank == 0) {
             warnOfDisplay(r->arguments);
         }
-        code = (r->arguments->frames[1] >= 0 ? renderFrames : renderPieces)(r, scene);
+        code = (bakes                          ? bakePatches
+                : r->arguments->frames[1] >= 0 ? renderFrames
+                                               : renderPieces)(r, scene);
     }
     vplScene_Destroy(scene);
     vplContext_Destroy(context);
@@ -130,17 +134,20 @@ static int run(Ranks* r, int count, const char** words)
         fputs(r->rank == 0 ? USAGE : "", stdout);
         return EXIT_DONE;
     }
-    if (good && strcmp(word, "render") != 0) {
-        complain("no command \"%s\" for many ranks, must be render; vpl-mpi help explains it", word);
+    const bool bakes = strcmp(word, "bake") == 0, known = bakes || strcmp(word, "render") == 0;
+    if (good && !known) {
+        complain("no command \"%s\" for many ranks, must be render or bake; vpl-mpi help explains them", word);
     }
-    int code = good && strcmp(word, "render") == 0 && parseArguments(count, words, &arguments) ? EXIT_DONE
-                                                                                               : EXIT_USAGE;
+    int code = good && known && parseArguments(count, words, &arguments) ? EXIT_DONE : EXIT_USAGE;
     code = largestNumber(r, code);
     if (code == EXIT_DONE && arguments.help) {
         fputs(r->rank == 0 ? USAGE : "", stdout);
         return EXIT_DONE;
     }
-    code = shareNumber(r, code == EXIT_DONE && r->rank == 0 ? check(&arguments) : code);
+    if (code == EXIT_DONE && r->rank == 0) {
+        code = (bakes ? checkBake : checkRender)(&arguments);
+    }
+    code = shareNumber(r, code);
     if (code != EXIT_DONE) {
         return code;
     }
@@ -152,7 +159,7 @@ static int run(Ranks* r, int count, const char** words)
     if (arguments.verbose) {
         complain("process %ld", (long)getpid());
     }
-    return render(r);
+    return work(r, bakes);
 }
 
 int main(int count, char** words)

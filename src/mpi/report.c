@@ -20,9 +20,9 @@ static double imbalanceOf(const Ranks* r)
 
 static json_t* rankJson(const RankStats* s)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "units", json_integer((json_int_t)s->units), "busy_ms",
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "units", json_integer((json_int_t)s->units), "busy_ms",
                      numberJson(s->busyMs), "cpu_ms", numberJson(s->cpuMs), "messages",
-                     json_integer((json_int_t)s->messages), "bytes", json_integer((json_int_t)s->bytes),
+                     json_integer((json_int_t)s->messages), "wait_ms", numberJson(s->waitMs), "bytes", json_integer((json_int_t)s->bytes),
                      "peak_bytes", json_integer((json_int_t)s->peakBytes));
 }
 

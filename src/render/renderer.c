@@ -4,6 +4,7 @@
 #include "render/renderer.h"
 
 #include "base/clock.h"
+#include "base/team.h"
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -136,7 +137,7 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     r->runner.progress = isfinite(r->deadline) || options->progress != NULL ? watch : NULL;
     r->runner.progressUser = r;
     r->runner.stats.clampLoss = -1;
-    const vplResult result = vplRenderer_PlanFirst(r);
+    const vplResult result = vplTeam_Agree(context, vplRenderer_PlanFirst(r));
     if (result != VPL_SUCCESS) {
         vplRenderer_Destroy(r);
         return result;
