@@ -124,8 +124,7 @@ static void writeRows(const vplTeam* t, vplResult mine, vplTeamMail* mail, const
             to += rows->bytes;
         }
         mail->sendBytes[m] = (size_t)(to - start);
-        mail->receivedBytes[m] =
-            sizeof result + rows->bytes * countRows(rows->first, rows->end, m, t->count);
+        mail->receivedBytes[m] = sizeof result + rows->bytes * countRows(rows->first, rows->end, m, t->count);
     }
 }
 

@@ -12,7 +12,8 @@ static const char USAGE[] =
     "mpirun -n N vpl-mpi render SCENE -o FILE [options of vpl render] [options of vpl-mpi]\n"
     "mpirun -n N vpl-mpi bake SCENE -o FILE.ply [options of vpl bake]\n"
     "mpirun -n 2 vpl-mpi --ping-pong\n\n"
-    "Renders a picture by pieces, or the frames of --frames, with the bits of vpl render for any N. For --method radiosity\n"
+    "Renders a picture by pieces, or the frames of --frames, with the bits of vpl render for any N. For "
+    "--method radiosity\n"
     "and for bake the ranks share the rows of form factors, so that N machines hold N times as many.\n"
     "  --checkpoint FILE   append finished pieces to FILE, which vpl merge reads, too; of --frames a list\n"
     "  --resume FILE       go on with it, with any N\n"
@@ -113,9 +114,7 @@ static int work(Ranks* r, bool bakes)
         if (r->rank == 0) {
             warnOfDisplay(r->arguments);
         }
-        code = (bakes                          ? bakePatches
-                : r->arguments->frames[1] >= 0 ? renderFrames
-                                               : renderPieces)(r, scene);
+        code = (bakes ? bakePatches : r->arguments->frames[1] >= 0 ? renderFrames : renderPieces)(r, scene);
     }
     vplScene_Destroy(scene);
     vplContext_Destroy(context);
@@ -136,7 +135,8 @@ static int run(Ranks* r, int count, const char** words)
     }
     const bool bakes = strcmp(word, "bake") == 0, known = bakes || strcmp(word, "render") == 0;
     if (good && !known) {
-        complain("no command \"%s\" for many ranks, must be render or bake; vpl-mpi help explains them", word);
+        complain("no command \"%s\" for many ranks, must be render or bake; vpl-mpi help explains them",
+                 word);
     }
     int code = good && known && parseArguments(count, words, &arguments) ? EXIT_DONE : EXIT_USAGE;
     code = largestNumber(r, code);

@@ -31,7 +31,7 @@ typedef struct Ranks {
     RankStats* all;  // of every rank, at rank 0 after runWork
     const Arguments* arguments;
     vplContext* context;
-    char speaker[64]; // the name of this rank in sentences
+    char speaker[64];      // the name of this rank in sentences
     MPI_Request* requests; // of an exchange of the team
 } Ranks;
 

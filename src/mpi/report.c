@@ -20,10 +20,11 @@ static double imbalanceOf(const Ranks* r)
 
 static json_t* rankJson(const RankStats* s)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "units", json_integer((json_int_t)s->units), "busy_ms",
-                     numberJson(s->busyMs), "cpu_ms", numberJson(s->cpuMs), "messages",
-                     json_integer((json_int_t)s->messages), "wait_ms", numberJson(s->waitMs), "bytes", json_integer((json_int_t)s->bytes),
-                     "peak_bytes", json_integer((json_int_t)s->peakBytes));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "units", json_integer((json_int_t)s->units),
+                     "busy_ms", numberJson(s->busyMs), "cpu_ms", numberJson(s->cpuMs), "messages",
+                     json_integer((json_int_t)s->messages), "wait_ms", numberJson(s->waitMs), "bytes",
+                     json_integer((json_int_t)s->bytes), "peak_bytes",
+                     json_integer((json_int_t)s->peakBytes));
 }
 
 int reportRanks(const Ranks* r, double totalMs, uint64_t hash)

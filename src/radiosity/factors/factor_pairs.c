@@ -319,7 +319,8 @@ static void storeTile(const Tile* tile, float* there, size_t thereStride, float*
     for (size_t i = 0; i < LANES; i++) {
         for (uint32_t left = tile->pairs[i]; left != 0; left &= left - 1) {
             const size_t l = (size_t)__builtin_ctz(left);
-            const float mean = meanOf(tile, (int)i, (int)l), areaA = tile->a->area[i], areaB = tile->b->area[l];
+            const float mean = meanOf(tile, (int)i, (int)l), areaA = tile->a->area[i],
+                        areaB = tile->b->area[l];
             const float larger = areaA > areaB ? areaA : areaB;
             const float used = bounded ? vplMinf(mean, 1 / larger) : mean;
             there[i * thereStride + l] = used * areaB;
@@ -371,13 +372,13 @@ vplResult vplPairWork_Open(vplFactorWork* work, int tasks, vplPairWork* pairsOut
 {
     const size_t samples =
         work->def.samples > VPL_FACTOR_SAMPLES ? 2 * (size_t)work->context->workerCount : 0;
-    *pairsOut = (vplPairWork){
-        .work = work,
-        .geometry = work->sides->patches->geometry,
-        .trace = vplGetRayKernels(work->context->isa)->anyPacket,
-        .rays = vplArena_AllocZero(work->scratch, (size_t)tasks, sizeof *pairsOut->rays),
-        .analyticPairs = vplArena_AllocZero(work->scratch, (size_t)tasks, sizeof(int64_t)),
-        .samples = vplArena_AllocZero(work->scratch, samples, sizeof *pairsOut->samples)};
+    *pairsOut =
+        (vplPairWork){.work = work,
+                      .geometry = work->sides->patches->geometry,
+                      .trace = vplGetRayKernels(work->context->isa)->anyPacket,
+                      .rays = vplArena_AllocZero(work->scratch, (size_t)tasks, sizeof *pairsOut->rays),
+                      .analyticPairs = vplArena_AllocZero(work->scratch, (size_t)tasks, sizeof(int64_t)),
+                      .samples = vplArena_AllocZero(work->scratch, samples, sizeof *pairsOut->samples)};
     return vplArena_Check(work->scratch);
 }
 

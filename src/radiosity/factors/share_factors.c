@@ -10,7 +10,7 @@
 enum {
     LANES = VPL_SHARED_LANES,
     OWN_BLOCKS = VPL_STRIPS_PER_ROUND,
-    SPAN = 64       // columns of a task, in blocks
+    SPAN = 64 // columns of a task, in blocks
 };
 
 typedef struct Round {
@@ -75,9 +75,9 @@ static Piece pieceOf(const Round* r, int row, int k)
     if (block > of) {
         return (Piece){NULL, 0};
     }
-    return block < of
-               ? (Piece){r->strips[k].back + (size_t)row * LANES, 1}
-               : (Piece){r->strips[k].there + lane * columns + (size_t)block * LANES, r->rows->blocks - block};
+    return block < of ? (Piece){r->strips[k].back + (size_t)row * LANES, 1}
+                      : (Piece){r->strips[k].there + lane * columns + (size_t)block * LANES,
+                                r->rows->blocks - block};
 }
 
 static uint16_t maskOf(const float* values)
@@ -133,8 +133,7 @@ static void writeMessages(Round* r)
 {
     size_t at = 0;
     for (int m = 0; m < r->rows->members; m++) {
-        r->mail.sendBytes[m] =
-            writeMessage(r, r->round * r->rows->perRound * LANES, m, r->mail.send + at);
+        r->mail.sendBytes[m] = writeMessage(r, r->round * r->rows->perRound * LANES, m, r->mail.send + at);
         at += r->mail.sendBytes[m];
     }
 }
@@ -179,7 +178,8 @@ static vplResult takeMessages(Round* r)
     s->values[r->round] = values;
     TRY(vplArena_Check(r->work->factors->arena));
     float* to = values;
-    for (int row = vplTeam_FirstRow(first * LANES, s->member, s->members); row < s->count; row += s->members) {
+    for (int row = vplTeam_FirstRow(first * LANES, s->member, s->members); row < s->count;
+         row += s->members) {
         const size_t own = (size_t)(row / s->members);
         uint16_t* masks = s->masks + own * (size_t)s->blocks;
         s->starts[(size_t)r->round * (size_t)s->ownCount + own] = (uint32_t)(to - values);

@@ -18,8 +18,9 @@ typedef struct vplSharedRows {
     int ownCount;        // own rows
     int perRound;        // blocks of columns that came in one round
     int rounds;
-    uint16_t* masks;  // [own row][block]; bit l: the factor of column 16 block + l is not 0
-    float** values;   // [round]: factors of that round's columns, row by row. A row's last round has all columns after it, too
+    uint16_t* masks; // [own row][block]; bit l: the factor of column 16 block + l is not 0
+    float**
+        values; // [round]: factors of that round's columns, row by row. A row's last round has all columns after it, too
     uint32_t* starts; // [round][own row]: where the row begins
     float* nearby;    // [row][column % 64]: of all rows, in the 64 columns around the diagonal
 } vplSharedRows;

@@ -15,8 +15,8 @@ typedef struct vplExchange {
     const vplRadiosityKernels* kernels;
     int count;
     vplPlanes reflectance;
-    double (*sums)[3];    // results of the last vplExchange_Gather
-    vplLinkScratch nodes; // for links
+    double (*sums)[3];           // results of the last vplExchange_Gather
+    vplLinkScratch nodes;        // for links
     const vplSharedRows* shared; // form factors of a team; NULL: of this process alone
     float* rooms;                // for its rows, one per worker
     vplTeamMail mail;
