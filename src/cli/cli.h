@@ -142,6 +142,9 @@ int exitCode(vplResult result, bool reading);
 // Writes vplPlan_Describe's text.
 int printPlan(const vplPlan* plan, FILE* file);
 
+// --explain and --dry-run: prints the plan; an exit code.
+int explainPlan(const Arguments* arguments, const vplScene* scene);
+
 // Loads the scene, prints the plan if --explain or --dry-run asks for it, and calls `work` unless it is a dry
 // run.
 typedef int SceneWork(const Arguments* arguments, vplScene* scene);

@@ -69,13 +69,16 @@ static bool takeOptions(int* count, const char** words, MpiOptions* o)
 // Complains of what pieces and frames do not have.
 static int checkRender(const Arguments* a)
 {
-    static const char* const OTHERS[] = {"tile",    "aov",     "plan-out",   "error-map",
-                                         "explain", "dry-run", "no-partial", "checkpoint-every"};
+    static const char* const OTHERS[] = {"tile",      "aov",        "plan-out",
+                                         "error-map", "no-partial", "checkpoint-every"};
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
         if (isGiven(a, OTHERS[i])) {
             complain("vpl-mpi renders without --%s", OTHERS[i]);
             return EXIT_USAGE;
         }
+    }
+    if (a->dryRun && a->positionalCount > 0) {
+        return EXIT_DONE;
     }
     if (a->positionalCount < 1 || a->output == NULL) {
         complain("render needs %s", a->output == NULL ? "-o FILE, the picture to write" : "a scene file");
@@ -102,6 +105,26 @@ static int checkRender(const Arguments* a)
     return good ? EXIT_DONE : EXIT_COULD_NOT;
 }
 
+// --explain and --dry-run. All ranks plan, because they share what the plan needs.
+static int explain(Ranks* r, const vplScene* scene)
+{
+    const Arguments* a = r->arguments;
+    vplPlan* plan = NULL;
+    int code = formTeam(r);
+    if (code == EXIT_DONE && r->rank == 0) {
+        code = explainPlan(a, scene);
+        if (code == EXIT_DONE) {
+            fprintf(a->dryRun ? stdout : stderr,
+                    "%d ranks: each needs this memory, rank 0 also the finished picture\n", r->count);
+        }
+    } else if (code == EXIT_DONE) {
+        code = exitCode(planRender(a, scene, &plan), true);
+        vplPlan_Destroy(plan);
+    }
+    dissolveTeam(r);
+    return shareNumber(r, code);
+}
+
 static int work(Ranks* r, bool bakes)
 {
     vplContext* context = openContext(r->arguments);
@@ -109,7 +132,10 @@ static int work(Ranks* r, bool bakes)
     r->context = context;
     int code = largestNumber(r, context != NULL ? EXIT_DONE : EXIT_COULD_NOT);
     code = code == EXIT_DONE ? shareScene(r, context, &scene) : code;
-    if (code == EXIT_DONE) {
+    if (code == EXIT_DONE && (r->arguments->explain || r->arguments->dryRun)) {
+        code = explain(r, scene);
+    }
+    if (code == EXIT_DONE && !r->arguments->dryRun) {
         catchInterrupts();
         if (r->rank == 0) {
             warnOfDisplay(r->arguments);

@@ -114,6 +114,9 @@ static int prepare(Picture* p, const vplScene* scene, Work* work)
     const bool zero = p->ranks->rank == 0;
     int code = formTeam(p->ranks);
     code = code == EXIT_DONE ? exitCode(vplRenderer_Create(scene, &options, &p->renderer), true) : code;
+    if (code == EXIT_DONE) {
+        p->ranks->stats.plannedBytes = (double)vplRenderer_GetPlan(p->renderer)->peakBytes;
+    }
     if (code == EXIT_DONE && zero) {
         code = exitCode(vplAssembly_Create(p->context, &p->assembly), false);
         code = code == EXIT_DONE ? openJournal(&p->journal, p->ranks->arguments, NULL, readPieces, p) : code;

@@ -12,6 +12,7 @@ typedef struct RankStats {
     double units, busyMs, cpuMs; // units of work that were made; time in them; processor time of the process
     double messages, bytes;      // sent
     double peakBytes;            // of the context
+    double plannedBytes;         // that the plan foretold; 0: unknown
     double waitMs;               // ms in exchanges of the team
 } RankStats;
 
