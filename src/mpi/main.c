@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// vpl-mpi: vpl render and vpl bake for many machines. All ranks parse the same words; only rank 0 complains of them.
+// vpl-mpi: vpl render, bake and tradeoff for many machines. All ranks parse the same words; only rank 0 complains of them.
 #include "mpi/ranks.h"
+
+#include "cli/tradeoff/tradeoff.h"
 
 #include <mpi.h>
 #include <signal.h>
@@ -11,10 +13,13 @@
 static const char USAGE[] =
     "mpirun -n N vpl-mpi render SCENE -o FILE [options of vpl render] [options of vpl-mpi]\n"
     "mpirun -n N vpl-mpi bake SCENE -o FILE.ply [options of vpl bake]\n"
+    "mpirun -n N vpl-mpi tradeoff SCENE -o DIR [options of vpl tradeoff]\n"
     "mpirun -n 2 vpl-mpi --ping-pong\n\n"
     "Renders a picture by pieces, or the frames of --frames, with the bits of vpl render for any N. For "
     "--method radiosity\n"
-    "and for bake the ranks share the rows of form factors, so that N machines hold N times as many.\n"
+    "and for bake the ranks share the rows of form factors, so that N machines hold N times as many. For "
+    "tradeoff each\n"
+    "rank measures every N-th setting, on its own machine and from its own disk.\n"
     "  --checkpoint FILE   append finished pieces to FILE, which vpl merge reads, too; of --frames a list\n"
     "  --resume FILE       go on with it, with any N\n"
     "  --grace SECONDS     after SIGTERM what is under way may take so long; default 5\n"
@@ -159,9 +164,11 @@ static int run(Ranks* r, int count, const char** words)
         fputs(r->rank == 0 ? USAGE : "", stdout);
         return EXIT_DONE;
     }
-    const bool bakes = strcmp(word, "bake") == 0, known = bakes || strcmp(word, "render") == 0;
+    const bool bakes = strcmp(word, "bake") == 0, measures = strcmp(word, "tradeoff") == 0;
+    const bool known = bakes || measures || strcmp(word, "render") == 0;
     if (good && !known) {
-        complain("no command \"%s\" for many ranks, must be render or bake; vpl-mpi help explains them",
+        complain("no command \"%s\" for many ranks, must be render, bake or tradeoff; vpl-mpi help explains "
+                 "them",
                  word);
     }
     int code = good && known && parseArguments(count, words, &arguments) ? EXIT_DONE : EXIT_USAGE;
@@ -171,7 +178,7 @@ static int run(Ranks* r, int count, const char** words)
         return EXIT_DONE;
     }
     if (code == EXIT_DONE && r->rank == 0) {
-        code = (bakes ? checkBake : checkRender)(&arguments);
+        code = (bakes ? checkBake : measures ? checkTradeoff : checkRender)(&arguments);
     }
     code = shareNumber(r, code);
     if (code != EXIT_DONE) {
@@ -185,7 +192,7 @@ static int run(Ranks* r, int count, const char** words)
     if (arguments.verbose) {
         complain("process %ld", (long)getpid());
     }
-    return work(r, bakes);
+    return measures ? measureTradeoff(r) : work(r, bakes);
 }
 
 int main(int count, char** words)

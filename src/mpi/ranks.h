@@ -119,6 +119,7 @@ bool closeJournal(Journal* journal);
 int renderPieces(Ranks* ranks, vplScene* scene); // picture.c
 int renderFrames(Ranks* ranks, vplScene* scene); // frames.c
 int bakePatches(Ranks* ranks, vplScene* scene);  // bake.c
+int measureTradeoff(Ranks* ranks);               // tradeoff.c
 int measureMessages(Ranks* ranks);               // ping_pong.c
 
 // Prints what the ranks did, as -v and --stats ask for it; `hash` is the picture's. An exit code (report.c).

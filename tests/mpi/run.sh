@@ -52,6 +52,28 @@ for implementation in openmpi mpich; do
     done
 done
 
+# Settings, pictures and errors of a sweep are those of one process; times are those of each rank.
+sweep="examples/scenes/closed-room.json --size 16x9 --shadow-map 32 --quiet --seeds 2 --time 100000 --reference-spp 16 \
+    --sweeps sampler,min-distance,pipeline,direct --particles 4"
+columns() { # FILE: what does not depend on times, sorted
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) name[i] = $i; next }
+        { line = ""
+          for (i = 1; i <= NF; i++) if (name[i] ~ /^(command|seed|image_hash|error|relmse|energy_ratio|rays)$/) line = line $i ","
+          print line }' "$1" | sort
+}
+same_sweep() { # IMPLEMENTATION N
+    rm -rf "$scratch/sweep"
+    ranks "$1" "$2" tradeoff $sweep -o "$scratch/sweep" && columns "$scratch/sweep/tradeoff.csv" >"$scratch/there" &&
+        [ "$(ls "$scratch/sweep" | wc -l)" -eq 5 ] && cmp "$scratch/here" "$scratch/there"
+}
+"$build/vpl" tradeoff $sweep -o "$scratch/sweep"
+columns "$scratch/sweep/tradeoff.csv" >"$scratch/here"
+for implementation in openmpi mpich; do
+    for number in 1 2 3 5; do
+        check "Tradeoff_of_${number}_ranks_$implementation" same_sweep $implementation $number
+    done
+done
+
 same_frames() { # IMPLEMENTATION N OPTION...
     implementation=$1 number=$2
     shift 2
@@ -126,8 +148,12 @@ for implementation in openmpi mpich; do
         $options -o "$scratch/no.pfm" --sppp 3
     check "BudgetIsToldOnce_$implementation" refuses 2 "a time or an error ends this picture" ranks $implementation 3 render \
         $options --budget 50 -o "$scratch/no.pfm"
-    check "OtherCommandsAreRefused_$implementation" refuses 2 "must be render or bake" ranks $implementation 2 tradeoff \
+    check "OtherCommandsAreRefused_$implementation" refuses 2 "must be render, bake or tradeoff" ranks $implementation 2 compare \
         "$room" -o "$scratch/no"
+    check "TradeoffOfNoSceneIsToldOnce_$implementation" refuses 2 "cannot open" ranks $implementation 3 tradeoff nowhere.json \
+        -o "$scratch/no"
+    check "TradeoffWithoutAFolderIsToldOnce_$implementation" refuses 1 "cannot create the folder" ranks $implementation 3 \
+        tradeoff ${sweep%% *} -o "$scratch/no/where"
     check "BakeOfAnotherMethodIsToldOnce_$implementation" refuses 2 "alone" ranks $implementation 3 bake "$room" \
         --method keller -o "$scratch/no.ply"
     check "TooManyPatchesAreToldOnce_$implementation" refuses 2 "or more processes" ranks $implementation 3 render "$rooms" \
