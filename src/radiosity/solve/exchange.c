@@ -7,7 +7,7 @@
 
 enum {
     ROWS = 16,       // per task
-    OWN_ROWS = 4,    // per task, of a team: 64 rows are few for each of its members
+    OWN_ROWS = 4,    // per task, of a team; 1 where there are only the rows of a block of Gauss-Seidel
     MOST_ROUNDS = 64 // of the power method
 };
 
@@ -66,6 +66,7 @@ typedef struct Rows {
     vplExchange* exchange;
     const vplPlanes* x;
     int first, end;
+    int step; // rows of all members of a team while one does a task
 } Rows;
 
 static void gatherTask(void* data, int task, int worker)
@@ -86,9 +87,9 @@ static void gatherOwnTask(void* data, int task, int worker)
     const Rows* r = data;
     const vplExchange* e = r->exchange;
     const vplSharedRows* s = e->shared;
-    const int from = vplTeam_FirstRow(r->first, s->member, s->members) + task * OWN_ROWS * s->members;
+    const int from = vplTeam_FirstRow(r->first, s->member, s->members) + task * r->step;
     float* room = e->rooms + (size_t)worker * vplSharedRows_Columns(s);
-    for (int i = from; i < vplMini(from + OWN_ROWS * s->members, r->end); i += s->members) {
+    for (int i = from; i < vplMini(from + r->step, r->end); i += s->members) {
         vplSharedRows_Decode(s, i, room);
         e->kernels->rowDot(room, r->x, e->count, e->sums[i]);
     }
@@ -97,16 +98,17 @@ static void gatherOwnTask(void* data, int task, int worker)
 static vplResult gatherShared(Rows* r)
 {
     vplExchange* e = r->exchange;
-    const int step = OWN_ROWS * e->shared->members;
+    const int count = r->end - r->first;
     const vplTeamRows rows = {e->sums, sizeof *e->sums, r->first, r->end};
+    r->step = e->shared->members * (count > VPL_SWEEP_ROWS ? OWN_ROWS : 1);
     return vplTeam_ShareRows(
-        e->context, vplParallelForAsking(e->context, (r->end - r->first + step - 1) / step, gatherOwnTask, r),
+        e->context, vplParallelForAsking(e->context, (count + r->step - 1) / r->step, gatherOwnTask, r),
         &e->mail, &rows);
 }
 
 vplResult vplExchange_GatherRows(vplExchange* exchange, const vplPlanes* x, int first, int end)
 {
-    Rows rows = {exchange, x, first, end};
+    Rows rows = {exchange, x, first, end, ROWS};
     if (exchange->shared != NULL) {
         return gatherShared(&rows);
     }
