@@ -113,6 +113,19 @@ TEST(PiecesHaveTheBitsOfOneRender, 2)
     vplScene_Destroy(scene);
 }
 
+// Near hits of sixteen pixels share one of several lights, so a band must take the same pixels together as the whole.
+TEST(PiecesOfAFinalGatherChooseTheSameLights, 2)
+{
+    static const char* const CASES[] = {"--method radiosity --patches 60 --gather 4 --interleave 8",
+                                        "--method radiosity --patches 60 --gather 4 --interleave 4"};
+    vplScene* scene = openScene(context, "examples/scenes/six-rooms.json");
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        const vplRenderOptions o = optionsOf(CASES[i]);
+        assert_int_equal(hashOfPieces(context, scene, &o, 3, true), hashOfWhole(scene, &o));
+    }
+    vplScene_Destroy(scene);
+}
+
 // Divides the room in three bands.
 static vplRenderer* openRoom(vplContext* context, const vplRenderOptions* o, vplScene** sceneOut,
                              vplPieceGrid* gridOut)

@@ -40,6 +40,22 @@ typedef void vplFileFcn(void* user, const vplMemoryFile* file);
 // vplContext_SetFiles takes the files. NULL (default): no function is called.
 void vplContext_SetFileObserver(vplContext* context, vplFileFcn* fcn, void* user);
 
+// Processes that share work, each with a context of its own. They make the same calls with the same arguments.
+typedef struct vplTeam {
+    int index, count; // this process, in [0, count); all of them, in [1, 65536]
+    // Sends each process m the next sendBytes[m] bytes of `send`, and receives receiveBytes[m] bytes from each, one after the
+    // other. It is called on the thread that made the call, as often by each process, and returns when all bytes are there.
+    void (*exchange)(void* user, const void* send, const size_t* sendBytes, void* receive,
+                     const size_t* receiveBytes);
+    void* user; // passed to exchange
+} vplTeam;
+
+// From now on vplFormFactors_Create holds every count-th row of the matrix in each process, and what is computed with these
+// form factors (vplSolveRadiosity but for shooting, vplGatherRadiosity, vplRadiosityResidual) is shared, too; renders by
+// radiosity compare notes after each stage. Bits are those of one process. If one process fails, all calls under way fail, and
+// the team must be set anew. The team is copied; NULL (default): no team. VPL_INVALID_ARGUMENT, VPL_OUT_OF_MEMORY.
+vplResult vplContext_SetTeam(vplContext* context, const vplTeam* team);
+
 VPL_HEADER_END
 
 #endif

@@ -23,6 +23,11 @@ typedef struct vplPieceGrid {
 // with layers, and passes with marks drawn over them.
 vplResult vplRenderer_Divide(const vplRenderer* renderer, int bands, vplPieceGrid* gridOut);
 
+// Makes what all pieces of radiosity need: patches, form factors and the light that they exchange. Without it the first piece
+// makes it. The processes of a team (vplContext_SetTeam) call it together; afterwards each may make pieces of its own without
+// the team. VPL_CANCELLED and what vplRenderer_Step fails with.
+vplResult vplRenderer_Prepare(vplRenderer* renderer);
+
 // Renders piece `index` of the grid and writes it as bytes, little-endian, which carry the hash of scene and options and a
 // checksum. What all pieces need (geometry, lights of the pass, patches) is kept for the next piece. Interleaved pictures also
 // light 16 rows above and below a band, which the filter reads. The bytes are freed by vplBytes_Free. Pieces leave the

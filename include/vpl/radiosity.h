@@ -89,7 +89,8 @@ vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchS
 
 // ---- form factors
 
-// The largest matrix of form factors; larger scenes need the hierarchy (vplLinks).
+// The largest matrix of form factors, unless the context's limit of memory (vplContext_SetMemoryLimit) is higher; larger scenes
+// need the hierarchy (vplLinks) or a team of processes (vplContext_SetTeam).
 #define VPL_MAX_FORM_FACTOR_BYTES ((int64_t)1 << 30)
 
 typedef struct vplFormFactorDef {
@@ -112,16 +113,17 @@ vplFormFactorDef vplDefaultFormFactorDef(void);
 // F[i][j]: the fraction of what side i emits that arrives at side j. Read only.
 typedef struct vplFormFactors {
     int count;
-    const float* rows;    // [i][j]
+    const float* rows;    // [i][j]; NULL where a team shares them
     const float* rowSums; // before vplFormFactorDef.rowSums corrected them
-    int64_t rays, analyticPairs;
+    int64_t rays, analyticPairs; // of this process
     struct vplArena* arena; // owns the arrays
     vplContext* context;
 } vplFormFactors;
 
 // Computes half of the pairs, and the others by A_i F_ij = A_j F_ji. Factors are 0 within a plane and, except
 // for incentres, never above 1. Rays are cast only where a triangle can be in the way; bruteForce casts all.
-// VPL_LIMIT where the matrix takes more than VPL_MAX_FORM_FACTOR_BYTES, VPL_INVALID_ARGUMENT for a wrong def.
+// VPL_LIMIT where the matrix of one process takes more than VPL_MAX_FORM_FACTOR_BYTES, or than the context's limit of memory
+// if that is higher; VPL_INVALID_ARGUMENT for a wrong def.
 // Source: Hemgren, 3.3.1.
 vplResult vplFormFactors_Create(const vplPatchSides* sides, const vplFormFactorDef* def,
                                 vplFormFactors** factorsOut);

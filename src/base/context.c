@@ -127,6 +127,7 @@ void vplContext_Destroy(vplContext* context)
 {
     if (context != NULL) {
         vplFree(context, context->speeds);
+        vplFree(context, context->teamRoom);
         context->def.alloc(context->def.allocUser, context, CONTEXT_BYTES, 0);
     }
 }

@@ -35,6 +35,9 @@ struct vplContext {
     int fileCount;
     vplFileFcn* fileObserver; // see vplContext_SetFileObserver
     void* fileUser;
+    vplTeam team;         // see vplContext_SetTeam; count 0: none
+    vplResult teamResult; // the worst of its members so far
+    void* teamRoom;       // for headers of messages
 };
 
 // Returns a different number each time. Identifies an object, or one state of it.

@@ -142,6 +142,9 @@ int exitCode(vplResult result, bool reading);
 // Writes vplPlan_Describe's text.
 int printPlan(const vplPlan* plan, FILE* file);
 
+// --explain and --dry-run: prints the plan; an exit code.
+int explainPlan(const Arguments* arguments, const vplScene* scene);
+
 // Loads the scene, prints the plan if --explain or --dry-run asks for it, and calls `work` unless it is a dry
 // run.
 typedef int SceneWork(const Arguments* arguments, vplScene* scene);
@@ -198,6 +201,10 @@ int writeWholePicture(const Arguments* arguments, vplImage* image);
 // vpl render --tile: returns false after complaining of options that are not for parts; renders a part.
 bool checkTile(const Arguments* arguments);
 int renderTile(const Arguments* arguments, vplScene* scene);
+
+// vpl bake: an exit code after complaining of its options; bakes.
+int checkBake(const Arguments* arguments);
+int bakeScene(const Arguments* arguments, vplScene* scene);
 
 // Writes the file name of frame `number` of frames up to `last`: "-0012" before the extension, at least four
 // digits. last < 0: the name itself. Returns false if it does not fit.

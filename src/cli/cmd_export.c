@@ -45,7 +45,7 @@ int runLights(const Arguments* a)
 
 // ---- patches
 
-static int bake(const Arguments* a, vplScene* scene)
+int bakeScene(const Arguments* a, vplScene* scene)
 {
     catchInterrupts();
     Progress progress = beginProgress(a->quiet);
@@ -65,7 +65,7 @@ static int bake(const Arguments* a, vplScene* scene)
     return code;
 }
 
-int runBake(const Arguments* a)
+int checkBake(const Arguments* a)
 {
     const size_t length = a->output != NULL ? strlen(a->output) : 0;
     if (a->render.method != VPL_METHOD_RADIOSITY) {
@@ -79,5 +79,11 @@ int runBake(const Arguments* a)
     if (!a->dryRun && (!checkOutput(a->output) || (a->stats != NULL && !checkOutput(a->stats)))) {
         return EXIT_COULD_NOT;
     }
-    return runOnScene(a, bake);
+    return EXIT_DONE;
+}
+
+int runBake(const Arguments* a)
+{
+    const int code = checkBake(a);
+    return code == EXIT_DONE ? runOnScene(a, bakeScene) : code;
 }

@@ -125,8 +125,7 @@ vplResult planRender(const Arguments* a, const vplScene* scene, vplPlan** planOu
     return vplPlan_Create(scene, &options, NULL, planOut);
 }
 
-// --explain and --dry-run.
-static int explain(const Arguments* a, const vplScene* scene)
+int explainPlan(const Arguments* a, const vplScene* scene)
 {
     vplPlan* plan = NULL;
     int code = exitCode(planRender(a, scene, &plan), true);
@@ -160,7 +159,7 @@ int runOnScene(const Arguments* a, SceneWork* work)
         findSpeeds(a, context);
     }
     if (code == EXIT_DONE && (a->explain || a->dryRun)) {
-        code = explain(a, scene);
+        code = explainPlan(a, scene);
     }
     if (code == EXIT_DONE && !a->dryRun) {
         code = work(a, scene);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// vpl-mpi: vpl render for many machines. All ranks parse the same words; only rank 0 complains of them.
+// vpl-mpi: vpl render, bake and tradeoff for many machines. All ranks parse the same words; only rank 0 complains of them.
 #include "mpi/ranks.h"
+
+#include "cli/tradeoff/tradeoff.h"
 
 #include <mpi.h>
 #include <signal.h>
@@ -10,8 +12,14 @@
 
 static const char USAGE[] =
     "mpirun -n N vpl-mpi render SCENE -o FILE [options of vpl render] [options of vpl-mpi]\n"
+    "mpirun -n N vpl-mpi bake SCENE -o FILE.ply [options of vpl bake]\n"
+    "mpirun -n N vpl-mpi tradeoff SCENE -o DIR [options of vpl tradeoff]\n"
     "mpirun -n 2 vpl-mpi --ping-pong\n\n"
-    "Renders a picture by pieces, or the frames of --frames, with the bits of vpl render for any N.\n"
+    "Renders a picture by pieces, or the frames of --frames, with the bits of vpl render for any N. For "
+    "--method radiosity\n"
+    "and for bake the ranks share the rows of form factors, so that N machines hold N times as many. For "
+    "tradeoff each\n"
+    "rank measures every N-th setting, on its own machine and from its own disk.\n"
     "  --checkpoint FILE   append finished pieces to FILE, which vpl merge reads, too; of --frames a list\n"
     "  --resume FILE       go on with it, with any N\n"
     "  --grace SECONDS     after SIGTERM what is under way may take so long; default 5\n"
@@ -64,15 +72,18 @@ static bool takeOptions(int* count, const char** words, MpiOptions* o)
 }
 
 // Complains of what pieces and frames do not have.
-static int check(const Arguments* a)
+static int checkRender(const Arguments* a)
 {
-    static const char* const OTHERS[] = {"tile",    "aov",     "plan-out",   "error-map",
-                                         "explain", "dry-run", "no-partial", "checkpoint-every"};
+    static const char* const OTHERS[] = {"tile",      "aov",        "plan-out",
+                                         "error-map", "no-partial", "checkpoint-every"};
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
         if (isGiven(a, OTHERS[i])) {
             complain("vpl-mpi renders without --%s", OTHERS[i]);
             return EXIT_USAGE;
         }
+    }
+    if (a->dryRun && a->positionalCount > 0) {
+        return EXIT_DONE;
     }
     if (a->positionalCount < 1 || a->output == NULL) {
         complain("render needs %s", a->output == NULL ? "-o FILE, the picture to write" : "a scene file");
@@ -99,19 +110,42 @@ static int check(const Arguments* a)
     return good ? EXIT_DONE : EXIT_COULD_NOT;
 }
 
-static int render(Ranks* r)
+// --explain and --dry-run. All ranks plan, because they share what the plan needs.
+static int explain(Ranks* r, const vplScene* scene)
+{
+    const Arguments* a = r->arguments;
+    vplPlan* plan = NULL;
+    int code = formTeam(r);
+    if (code == EXIT_DONE && r->rank == 0) {
+        code = explainPlan(a, scene);
+        if (code == EXIT_DONE) {
+            fprintf(a->dryRun ? stdout : stderr,
+                    "%d ranks: each needs this memory, rank 0 also the finished picture\n", r->count);
+        }
+    } else if (code == EXIT_DONE) {
+        code = exitCode(planRender(a, scene, &plan), true);
+        vplPlan_Destroy(plan);
+    }
+    dissolveTeam(r);
+    return shareNumber(r, code);
+}
+
+static int work(Ranks* r, bool bakes)
 {
     vplContext* context = openContext(r->arguments);
     vplScene* scene = NULL;
     r->context = context;
     int code = largestNumber(r, context != NULL ? EXIT_DONE : EXIT_COULD_NOT);
     code = code == EXIT_DONE ? shareScene(r, context, &scene) : code;
-    if (code == EXIT_DONE) {
+    if (code == EXIT_DONE && (r->arguments->explain || r->arguments->dryRun)) {
+        code = explain(r, scene);
+    }
+    if (code == EXIT_DONE && !r->arguments->dryRun) {
         catchInterrupts();
         if (r->rank == 0) {
             warnOfDisplay(r->arguments);
         }
-        code = (r->arguments->frames[1] >= 0 ? renderFrames : renderPieces)(r, scene);
+        code = (bakes ? bakePatches : r->arguments->frames[1] >= 0 ? renderFrames : renderPieces)(r, scene);
     }
     vplScene_Destroy(scene);
     vplContext_Destroy(context);
@@ -130,17 +164,23 @@ static int run(Ranks* r, int count, const char** words)
         fputs(r->rank == 0 ? USAGE : "", stdout);
         return EXIT_DONE;
     }
-    if (good && strcmp(word, "render") != 0) {
-        complain("no command \"%s\" for many ranks, must be render; vpl-mpi help explains it", word);
+    const bool bakes = strcmp(word, "bake") == 0, measures = strcmp(word, "tradeoff") == 0;
+    const bool known = bakes || measures || strcmp(word, "render") == 0;
+    if (good && !known) {
+        complain("no command \"%s\" for many ranks, must be render, bake or tradeoff; vpl-mpi help explains "
+                 "them",
+                 word);
     }
-    int code = good && strcmp(word, "render") == 0 && parseArguments(count, words, &arguments) ? EXIT_DONE
-                                                                                               : EXIT_USAGE;
+    int code = good && known && parseArguments(count, words, &arguments) ? EXIT_DONE : EXIT_USAGE;
     code = largestNumber(r, code);
     if (code == EXIT_DONE && arguments.help) {
         fputs(r->rank == 0 ? USAGE : "", stdout);
         return EXIT_DONE;
     }
-    code = shareNumber(r, code == EXIT_DONE && r->rank == 0 ? check(&arguments) : code);
+    if (code == EXIT_DONE && r->rank == 0) {
+        code = (bakes ? checkBake : measures ? checkTradeoff : checkRender)(&arguments);
+    }
+    code = shareNumber(r, code);
     if (code != EXIT_DONE) {
         return code;
     }
@@ -152,7 +192,7 @@ static int run(Ranks* r, int count, const char** words)
     if (arguments.verbose) {
         complain("process %ld", (long)getpid());
     }
-    return render(r);
+    return measures ? measureTradeoff(r) : work(r, bakes);
 }
 
 int main(int count, char** words)

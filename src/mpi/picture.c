@@ -90,13 +90,33 @@ static vplResult divide(Picture* p)
     return bands > 1 ? vplRenderer_Divide(p->renderer, bands, &p->grid) : VPL_SUCCESS;
 }
 
+// Makes the light of patches together, unless no piece is left to be drawn. An exit code for all ranks.
+static int shareLight(Picture* p, int code)
+{
+    bool left = false;
+    for (int i = 0; i < p->grid.count && code == EXIT_DONE; i++) {
+        left = left || !p->done[i];
+    }
+    if (shareNumber(p->ranks, left) != 0) {
+        const double start = wallMs();
+        code = exitCode(vplRenderer_Prepare(p->renderer), false);
+        p->ranks->stats.busyMs += wallMs() - start - p->ranks->stats.waitMs;
+    }
+    dissolveTeam(p->ranks);
+    return largestNumber(p->ranks, code);
+}
+
 static int prepare(Picture* p, const vplScene* scene, Work* work)
 {
     vplRenderOptions options = p->ranks->arguments->render;
     options.progress = attendWork;
     options.progressUser = work;
     const bool zero = p->ranks->rank == 0;
-    int code = exitCode(vplRenderer_Create(scene, &options, &p->renderer), true);
+    int code = formTeam(p->ranks);
+    code = code == EXIT_DONE ? exitCode(vplRenderer_Create(scene, &options, &p->renderer), true) : code;
+    if (code == EXIT_DONE) {
+        p->ranks->stats.plannedBytes = (double)vplRenderer_GetPlan(p->renderer)->peakBytes;
+    }
     if (code == EXIT_DONE && zero) {
         code = exitCode(vplAssembly_Create(p->context, &p->assembly), false);
         code = code == EXIT_DONE ? openJournal(&p->journal, p->ranks->arguments, NULL, readPieces, p) : code;
@@ -117,7 +137,7 @@ static int prepare(Picture* p, const vplScene* scene, Work* work)
     }
     work->count = p->grid.count;
     work->done = zero ? p->done : NULL;
-    return largestNumber(p->ranks, code);
+    return shareLight(p, largestNumber(p->ranks, code));
 }
 
 static int finish(Picture* p, double start)

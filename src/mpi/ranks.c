@@ -2,7 +2,8 @@
 // Messages to all ranks. Sizes are sent first; bytes travel as words of 8, so that counts fit into int up to 16 GiB.
 #include "mpi/ranks.h"
 
-#include <mpi.h>
+#include "cli/bench/measure.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,6 +30,19 @@ int largestNumber(Ranks* r, int number)
     r->stats.messages += 1;
     r->stats.bytes += sizeof number;
     return largest;
+}
+
+int collectStats(Ranks* r)
+{
+    r->stats.cpuMs = cpuMs();
+    r->stats.peakBytes = (double)vplContext_GetPeakBytes(r->context);
+    r->all = r->all != NULL ? r->all : calloc((size_t)r->count, sizeof *r->all);
+    if (largestNumber(r, r->all == NULL) != 0) {
+        complain("out of memory");
+        return EXIT_COULD_NOT;
+    }
+    MPI_Gather(&r->stats, sizeof r->stats, MPI_BYTE, r->all, sizeof r->stats, MPI_BYTE, 0, MPI_COMM_WORLD);
+    return EXIT_DONE;
 }
 
 bool shareBytes(Ranks* r, uint8_t** bytes, size_t* size)

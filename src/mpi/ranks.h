@@ -5,11 +5,15 @@
 
 #include "cli/cli.h"
 
+#include <mpi.h>
+
 // What one rank did. All fields are doubles, so that they travel as one array.
 typedef struct RankStats {
     double units, busyMs, cpuMs; // units of work that were made; time in them; processor time of the process
     double messages, bytes;      // sent
     double peakBytes;            // of the context
+    double plannedBytes;         // that the plan foretold; 0: unknown
+    double waitMs;               // ms in exchanges of the team
 } RankStats;
 
 // The options that vpl-mpi has beside those of vpl.
@@ -28,12 +32,13 @@ typedef struct Ranks {
     RankStats* all;  // of every rank, at rank 0 after runWork
     const Arguments* arguments;
     vplContext* context;
-    char speaker[64]; // the name of this rank in sentences
+    char speaker[64];      // the name of this rank in sentences
+    MPI_Request* requests; // of an exchange of the team
 } Ranks;
 
 // ---- messages (ranks.c)
 
-enum { TAG_WORK = 1, TAG_STOP, TAG_RESULT, TAG_BYTES, TAG_FAIL, TAG_BYE };
+enum { TAG_WORK = 1, TAG_STOP, TAG_RESULT, TAG_BYTES, TAG_FAIL, TAG_BYE, TAG_TEAM };
 
 // Copies bytes of rank 0 to all ranks. At other ranks *bytes is allocated with malloc and *size is set. Returns false, at
 // all ranks, where one has no memory for them.
@@ -44,6 +49,17 @@ int shareNumber(Ranks* ranks, int number);
 
 // The largest number of all ranks.
 int largestNumber(Ranks* ranks, int number);
+
+// Fills in the statistics of this rank, and collects those of all at rank 0. An exit code for all ranks.
+int collectStats(Ranks* ranks);
+
+// ---- the team (team.c)
+
+// Makes all ranks share the rows of form factors, where the options ask for radiosity. An exit code for all ranks.
+int formTeam(Ranks* ranks);
+
+// From now on each rank works for itself.
+void dissolveTeam(Ranks* ranks);
 
 // ---- the scene (scene.c)
 
@@ -102,6 +118,8 @@ bool closeJournal(Journal* journal);
 
 int renderPieces(Ranks* ranks, vplScene* scene); // picture.c
 int renderFrames(Ranks* ranks, vplScene* scene); // frames.c
+int bakePatches(Ranks* ranks, vplScene* scene);  // bake.c
+int measureTradeoff(Ranks* ranks);               // tradeoff.c
 int measureMessages(Ranks* ranks);               // ping_pong.c
 
 // Prints what the ranks did, as -v and --stats ask for it; `hash` is the picture's. An exit code (report.c).

@@ -18,12 +18,17 @@ static double imbalanceOf(const Ranks* r)
     return sum > 0 ? most * workers / sum : 1;
 }
 
+static json_t* countJson(double count)
+{
+    return json_integer((json_int_t)count);
+}
+
 static json_t* rankJson(const RankStats* s)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "units", json_integer((json_int_t)s->units), "busy_ms",
-                     numberJson(s->busyMs), "cpu_ms", numberJson(s->cpuMs), "messages",
-                     json_integer((json_int_t)s->messages), "bytes", json_integer((json_int_t)s->bytes),
-                     "peak_bytes", json_integer((json_int_t)s->peakBytes));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "units", countJson(s->units), "busy_ms",
+                     numberJson(s->busyMs), "cpu_ms", numberJson(s->cpuMs), "wait_ms", numberJson(s->waitMs),
+                     "messages", countJson(s->messages), "bytes", countJson(s->bytes), "peak_bytes",
+                     countJson(s->peakBytes), "planned_bytes", countJson(s->plannedBytes));
 }
 
 int reportRanks(const Ranks* r, double totalMs, uint64_t hash)
@@ -49,8 +54,8 @@ int reportRanks(const Ranks* r, double totalMs, uint64_t hash)
     snprintf(text, sizeof text, "%016llx", (unsigned long long)hash);
     json_t* root =
         json_pack("{s:i, s:o, s:o, s:o, s:o, s:s, s:o}", "ranks", r->count, "total_ms", numberJson(totalMs),
-                  "imbalance", numberJson(imbalance), "messages", json_integer((json_int_t)messages), "bytes",
-                  json_integer((json_int_t)bytes), "image_hash", text, "each", list);
+                  "imbalance", numberJson(imbalance), "messages", countJson(messages), "bytes",
+                  countJson(bytes), "image_hash", text, "each", list);
     if (r->arguments->stats == NULL) {
         json_decref(root);
         return EXIT_DONE;

@@ -3,6 +3,7 @@
 #include "render/plan.h"
 
 #include "geometry/triangle.h"
+#include "radiosity/factors/form_factors.h"
 #include "render/show.h"
 #include "render/stages/results.h"
 
@@ -59,7 +60,7 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
         p->patchSides = sides->count;
     }
     p->linked = p->patchSides > p->linkAbove;
-    p->formFactorBytes = (int64_t)p->patchSides * p->patchSides * (int64_t)sizeof(float);
+    p->formFactorBytes = (int64_t)vplEstimateFactors(r, p).held;
     if (o->hierarchy == VPL_HIERARCHY_AUTO) {
         o->hierarchy = p->linked ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
         vplDecide(p, "hierarchy",
@@ -71,11 +72,13 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
             p->problem, sizeof p->problem,
             "groups of triangles have no incentre; use --patch-groups off or --form-factors monte-carlo");
     }
-    if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
+    const int64_t most = vplMostFormFactorBytes(r->run.context);
+    if (!p->linked && p->formFactorBytes > most && p->showsPatches) {
         p->refusal = VPL_LIMIT;
         snprintf(p->problem, sizeof p->problem,
-                 "form factors of %d sides take %lld bytes, at most %lld are allowed; use --hierarchy on",
-                 p->patchSides, (long long)p->formFactorBytes, (long long)VPL_MAX_FORM_FACTOR_BYTES);
+                 "form factors of %d sides take %lld bytes, at most %lld are allowed; use --hierarchy on%s",
+                 p->patchSides, (long long)p->formFactorBytes, (long long)most,
+                 vplHasTeam(r->run.context) ? " or more processes" : "");
     }
     return VPL_SUCCESS;
 }

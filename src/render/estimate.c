@@ -19,6 +19,7 @@ typedef struct Scale {
     const vplPlan* plan;
     double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
     Bytes links;                                                      // 0 where they are not known
+    vplSharedBytes factors;                                           // of all pairs
 } Scale;
 
 // Bytes per triangle that the rasterizer holds while it draws a view, and the six faces of a cube map.
@@ -98,9 +99,19 @@ static Bytes furtherBounces(const Scale* s)
     return (Bytes){held + made.held + grouped.held, scratch};
 }
 
+vplSharedBytes vplEstimateFactors(const vplRunner* r, const vplPlan* p)
+{
+    const double sides = p->patchSides;
+    const vplTeam* team = &r->run.context->team;
+    return team->count > 1 ? vplSharedRows_Estimate(r->run.results[VPL_STAGE_SIDES], sides, team->count,
+                                                    p->options.radiosity.formSamples)
+                           : (vplSharedBytes){4 * sides * sides, 515 * sides};
+}
+
 static Bytes formFactors(const Scale* s, double sides)
 {
-    return !s->plan->linked    ? (Bytes){4 * sides * sides, 515 * sides}
+    const double part = s->sides > 0 ? sides / s->sides : 0; // drafts of adaptive patches have fewer
+    return !s->plan->linked    ? (Bytes){part * part * s->factors.held, part * s->factors.scratch}
            : s->links.held > 0 ? s->links
                                : (Bytes){800 * sides, 700 * sides};
 }
@@ -372,6 +383,7 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
                .drawn = (double)drawnLights(r, p),
                .sides = p->patchSides};
     TRY(estimateLinks(r, &s));
+    s.factors = vplEstimateFactors(r, p);
     // The caller's own memory in the context does not count, but the scene's does.
     const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplScene_GetBytes(r->run.scene);
     const int64_t peak = (int64_t)vplContext_GetPeakBytes(r->run.context), before = (int64_t)r->peakBytes;

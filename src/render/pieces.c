@@ -64,6 +64,20 @@ vplResult vplRenderer_Divide(const vplRenderer* r, int bands, vplPieceGrid* grid
 
 // ---- rendering
 
+vplResult vplRenderer_Prepare(vplRenderer* r)
+{
+    REQUIRE(vplRenderer_ContextOf(r), r);
+    const vplPlan* p = r->plan;
+    int last = -1;
+    for (int i = 0; i < p->stageCount && p->options.method == VPL_METHOD_RADIOSITY; i++) {
+        const int id = p->stages[i].id;
+        last = id != VPL_STAGE_EMITTER_MAPS && id != VPL_STAGE_PICTURE ? id : last;
+    }
+    r->runner.stepFrom = r->runner.reported = 0;
+    r->runner.stepTo = 1;
+    return last >= 0 ? vplRunner_RunPlan(&r->runner, p, (vplStageId)last) : VPL_SUCCESS;
+}
+
 static vplResult drawParts(vplRenderer* r, int parts, vplImage** imageOut)
 {
     r->runner.run.parts = parts;
@@ -157,9 +171,6 @@ vplResult vplRenderer_MakePiece(vplRenderer* r, const vplPieceGrid* grid, int in
     run->endRow = place.endRow;
     r->runner.stepFrom = r->runner.reported = 0;
     r->runner.stepTo = 1;
-    if (r->plan->options.method == VPL_METHOD_RADIOSITY) {
-        vplRunner_Forget(&r->runner); // or its sweeps would go on from the solution of the last piece
-    }
     vplResult result = drawPiece(r, images);
     run->firstRow = run->endRow = 0;
     result = result == VPL_SUCCESS ? writePiece(run->context, &h, images, bytesOut) : result;

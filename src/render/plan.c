@@ -302,13 +302,23 @@ vplResult vplPlan_Create(const vplScene* scene, const vplRenderOptions* options,
                          vplPlan** planOut)
 {
     REQUIRE(vplScene_GetContext(scene), scene, options, planOut);
-    vplHistory* history;
-    TRY(vplHistory_Create(vplScene_GetContext(scene), &history));
-    vplRunner runner = vplRunner_Begin(scene, history);
-    runner.foretells = true;
-    const vplResult result = vplMakePlan(&runner, options, machine, planOut);
+    vplContext* context = vplScene_GetContext(scene);
+    vplPlan* plan = NULL;
+    vplHistory* history = NULL;
+    vplResult result = vplHistory_Create(context, &history);
+    if (result == VPL_SUCCESS) {
+        vplRunner runner = vplRunner_Begin(scene, history);
+        runner.foretells = true;
+        result = vplMakePlan(&runner, options, machine, &plan);
+    }
     vplHistory_Destroy(history);
-    return result;
+    result = vplTeam_Agree(context, result);
+    if (result != VPL_SUCCESS) {
+        vplPlan_Destroy(plan);
+        return result;
+    }
+    *planOut = plan;
+    return VPL_SUCCESS;
 }
 
 void vplPlan_Destroy(vplPlan* plan)

@@ -4,6 +4,7 @@
 #define VPL_RENDER_PLAN_H
 
 #include "geometry/emitter_trees.h"
+#include "radiosity/factors/shared_rows.h"
 #include "render/runner.h"
 
 // Plans with a runner, which keeps the results of stages that decisions needed; the plan's render finds them
@@ -64,6 +65,9 @@ vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 
 // The least numbers of emitters and of triangles that emit from which points choose by a tree.
 vplTreesWanted vplTreesOf(const vplPlan* plan);
+
+// The bytes of form factors of all pairs that this process holds, and those that it needs besides while it computes them.
+vplSharedBytes vplEstimateFactors(const vplRunner* runner, const vplPlan* plan);
 
 // Fills in counts and bytes: measured for stages that ran already, estimated for the others.
 vplResult vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);

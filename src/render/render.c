@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The public calls: a picture, layers, virtual lights or patches in one call.
+#include "base/team.h"
 #include "math/scalar.h"
 #include "render/planner/planner.h"
 #include "render/renderer.h"
@@ -206,6 +207,7 @@ vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float 
         vplArena* scratch = vplArena_Create(r->runner.run.context);
         result = vplWritePatchMesh(&r->runner.run, scratch, scale, path);
         vplArena_Destroy(scratch);
+        result = vplTeam_Agree(r->runner.run.context, result);
     }
     if (result == VPL_SUCCESS && statsOut != NULL) {
         vplRenderer_FinishStats(r, NULL, statsOut);

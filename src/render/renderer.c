@@ -4,6 +4,7 @@
 #include "render/renderer.h"
 
 #include "base/clock.h"
+#include "base/team.h"
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -113,10 +114,8 @@ static bool watch(void* user, double fraction)
     return r->asked.progress == NULL || r->asked.progress(r->asked.progressUser, fraction);
 }
 
-vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
-                             vplRenderer** rendererOut)
+static vplResult create(const vplScene* scene, const vplRenderOptions* options, vplRenderer** rendererOut)
 {
-    REQUIRE(vplScene_GetContext(scene), scene, options, rendererOut);
     vplContext* context = vplScene_GetContext(scene);
     const double start = vplClockMs(), cpuStart = vplCpuMs();
     vplHistory* history;
@@ -142,7 +141,16 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     r->runner.progress = isfinite(r->deadline) || options->progress != NULL ? watch : NULL;
     r->runner.progressUser = r;
     r->runner.stats.clampLoss = -1;
-    const vplResult result = vplRenderer_PlanFirst(r);
+    *rendererOut = r;
+    return vplRenderer_PlanFirst(r);
+}
+
+vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
+                             vplRenderer** rendererOut)
+{
+    REQUIRE(vplScene_GetContext(scene), scene, options, rendererOut);
+    vplRenderer* r = NULL;
+    const vplResult result = vplTeam_Agree(vplScene_GetContext(scene), create(scene, options, &r));
     if (result != VPL_SUCCESS) {
         vplRenderer_Destroy(r);
         return result;

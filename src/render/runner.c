@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/hash.h"
+#include "base/team.h"
 #include "render/options.h"
 #include "render/stages/ssvp.h"
 #include "scene/scene.h"
@@ -204,6 +205,10 @@ static uint64_t hashValue(const vplRun* run, const char* word, uint32_t build, u
             o->radiosity.placement == VPL_PATCHES_ADAPTIVE ? findKey(run, drafts, build) : 0;
         return hashBytes(state, &inner, sizeof inner);
     }
+    if (strcmp(word, "CONTINUES") == 0) { // each frame goes on from the one before
+        const bool goesOn = o->sequence.history != NULL && o->sequence.coherence == VPL_COHERENCE_ON;
+        return hashNumber(state, goesOn ? (double)build + 1 : 0);
+    }
     if (strcmp(word, "ALWAYS") == 0) { // never the same again
         return hashNumber(state, build);
     }
@@ -295,6 +300,7 @@ static vplResult make(vplRunner* r, vplStageId id)
         made = VPL_CANCELLED;
     }
     context->watch = outer;
+    made = vplTeam_Agree(context, made);
     vplArena_Destroy(r->run.scratch);
     addTime(&r->stats, stage->name, vplClockMs() - start - r->partMs);
     if (result != NULL && result == slot->result) { // the stage has changed its last result

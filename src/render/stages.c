@@ -332,7 +332,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "patch light", 0.65, IN(GEOMETRY) | IN(EMITTER_TREES) | IN(AREA_LIGHTS) | IN(PATCHES) | IN(SIDES), "patch-light seed gather EMITTERS",
         needsPatchLight, vplMakePatchLight, NULL, .report = NULL},
     [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
-        "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
+        "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "solver iterations residual CONTINUES",
         needsSolution, vplMakeSolution, NULL, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
         "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather GROUPS",

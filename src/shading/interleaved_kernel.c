@@ -283,11 +283,14 @@ void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
     const bool above = tile->y + tile->height <= s->firstRow, below = tile->y >= s->endRow;
     const int first = above ? tile->height - BORDER : 0,
               last = below && BORDER < tile->height ? BORDER : tile->height;
-    for (int y = first; y < last; y += side) {
+    // Sixteen near hits of a final gather share their lights, so its regions are those of the whole tile.
+    const bool whole = s->gather != NULL;
+    const int start = whole ? first / side * side : first, bottom = whole ? tile->height : last;
+    for (int y = start; y < last; y += side) {
         for (int x = 0; x < tile->width; x += side) {
             Region r = {.x = x, .y = y};
             r.width = tile->width - x < side ? tile->width - x : side;
-            r.height = last - y < side ? last - y : side;
+            r.height = bottom - y < side ? bottom - y : side;
             Class class;
             class.shading = s;
             class.tile = tile;

@@ -19,7 +19,7 @@ for method in instant-radiosity direct path keller ssvp radiosity; do
     rm "$out/e.pfm" "$out/f.pfm"
 done
 refuses DryRunOfWhatCannotBeRendered 2 "use physical" "$vpl" render "$room" $tiny --method ssvp --lighting documented --dry-run
-refuses DryRunOfTooManyPairs 2 "use --hierarchy on" "$vpl" render "$room" $tiny --method radiosity --patches 40000 --hierarchy off --dry-run
+refuses DryRunOfTooManyPairs 2 "use --hierarchy on" "$vpl" render "$room" $tiny --method radiosity --patches 40000 --hierarchy off --memory 2000 --dry-run
 refuses DryRunOfNoScene 2 "cannot open" "$vpl" render "$out/none.json" --dry-run
 refuses DryRunOfACameraThatIsNone 2 "camera is 3" "$vpl" render "$room" --camera 3 --dry-run
 succeeds DryRunWritesNothing "$vpl" render "$room" $tiny --dry-run -o "$out/d.pfm" --stats "$out/d.json"

@@ -28,8 +28,51 @@ picture Path "$room" --method path --spp 4 --size 64x150 --threads 1
 picture Passes "$room" --method keller --particles 20 --passes 5 --size 48x150 --threads 1
 picture Interleaved "$room" --method keller --particles 60 --pipeline interleaved --size 48x200 --threads 2
 picture Radiosity "$room" --method radiosity --patches 100 --size 48x150 --threads 1
+rooms=examples/scenes/six-rooms.json
+picture Rooms "$rooms" --method radiosity --patches 400 --size 48x150 --threads 2
+picture Jacobi "$rooms" --method radiosity --patches 300 --solver jacobi --size 48x150 --threads 1
+picture Shooting "$rooms" --method radiosity --patches 100 --solver shooting --size 48x150 --threads 1
+picture Residual "$rooms" --method radiosity --patches 100 --show residual --size 48x150 --threads 1
+picture Adaptive "$room" --method radiosity --patches 100 --patch-placement adaptive --size 48x150 --threads 1
+picture Links "$rooms" --method radiosity --patches 200 --hierarchy on --size 48x150 --threads 1
 picture Ssvp "$room" --method ssvp --first-bounce 16 --second-bounce 16 --size 48x150 --threads 1
 picture FilesOfTheScene examples/scenes/textured-room.json --method direct --size 48x150 --threads 1
+
+same_patches() { # IMPLEMENTATION N OPTION...
+    implementation=$1 number=$2
+    shift 2
+    rm -f "$scratch/ranks.ply"
+    ranks "$implementation" "$number" bake -o "$scratch/ranks.ply" --quiet "$@" && cmp "$scratch/whole.ply" "$scratch/ranks.ply"
+}
+bake="$rooms --method radiosity --patches 300 --threads 1"
+"$build/vpl" bake $bake -o "$scratch/whole.ply" --quiet
+for implementation in openmpi mpich; do
+    for number in 1 2 3 5 8; do
+        check "Bake_of_${number}_ranks_$implementation" same_patches $implementation $number $bake
+    done
+done
+
+# Settings, pictures and errors of a sweep are those of one process; times are those of each rank.
+sweep="examples/scenes/closed-room.json --size 16x9 --shadow-map 32 --quiet --seeds 2 --time 100000 --reference-spp 16 \
+    --sweeps sampler,min-distance,pipeline,direct --particles 4"
+columns() { # FILE: what does not depend on times, sorted
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) name[i] = $i; next }
+        { line = ""
+          for (i = 1; i <= NF; i++) if (name[i] ~ /^(command|seed|image_hash|error|relmse|energy_ratio|rays)$/) line = line $i ","
+          print line }' "$1" | sort
+}
+same_sweep() { # IMPLEMENTATION N
+    rm -rf "$scratch/sweep"
+    ranks "$1" "$2" tradeoff $sweep -o "$scratch/sweep" && columns "$scratch/sweep/tradeoff.csv" >"$scratch/there" &&
+        [ "$(ls "$scratch/sweep" | wc -l)" -eq 5 ] && cmp "$scratch/here" "$scratch/there"
+}
+"$build/vpl" tradeoff $sweep -o "$scratch/sweep"
+columns "$scratch/sweep/tradeoff.csv" >"$scratch/here"
+for implementation in openmpi mpich; do
+    for number in 1 2 3 5; do
+        check "Tradeoff_of_${number}_ranks_$implementation" same_sweep $implementation $number
+    done
+done
 
 same_frames() { # IMPLEMENTATION N OPTION...
     implementation=$1 number=$2
@@ -105,8 +148,16 @@ for implementation in openmpi mpich; do
         $options -o "$scratch/no.pfm" --sppp 3
     check "BudgetIsToldOnce_$implementation" refuses 2 "a time or an error ends this picture" ranks $implementation 3 render \
         $options --budget 50 -o "$scratch/no.pfm"
-    check "OtherCommandsAreRefused_$implementation" refuses 2 "must be render" ranks $implementation 2 bake \
-        "$room" -o "$scratch/no.ply"
+    check "OtherCommandsAreRefused_$implementation" refuses 2 "must be render, bake or tradeoff" ranks $implementation 2 compare \
+        "$room" -o "$scratch/no"
+    check "TradeoffOfNoSceneIsToldOnce_$implementation" refuses 2 "cannot open" ranks $implementation 3 tradeoff nowhere.json \
+        -o "$scratch/no"
+    check "TradeoffWithoutAFolderIsToldOnce_$implementation" refuses 1 "cannot create the folder" ranks $implementation 3 \
+        tradeoff ${sweep%% *} -o "$scratch/no/where"
+    check "BakeOfAnotherMethodIsToldOnce_$implementation" refuses 2 "alone" ranks $implementation 3 bake "$room" \
+        --method keller -o "$scratch/no.ply"
+    check "TooLittleMemoryIsToldOnce_$implementation" refuses 1 "MiB of memory, and 20 MiB are allowed" ranks $implementation 3 \
+        render "$rooms" --method radiosity --patches 300 --memory 20 --size 48x48 --threads 1 -o "$scratch/no.pfm"
     check "BadGraceIsRefused_$implementation" refuses 2 "grace is" ranks $implementation 2 render \
         $options -o "$scratch/no.pfm" --grace never
 done
@@ -122,6 +173,12 @@ mkdir "$scratch/small"
 if mount -t tmpfs -o size=28k none "$scratch/small" 2>/dev/null; then
     check FullDiskKeepsWhatWasFinished_openmpi full_disk openmpi
     check FullDiskKeepsWhatWasFinished_mpich full_disk mpich
+    full_disk_of_a_bake() {
+        refuses 1 "No space left on device" ranks "$1" 3 bake $bake -o "$scratch/small/part.ply" --quiet &&
+            [ -z "$(ls -A "$scratch/small")" ]
+    }
+    check FullDiskEndsABake_openmpi full_disk_of_a_bake openmpi
+    check FullDiskEndsABake_mpich full_disk_of_a_bake mpich
     umount "$scratch/small"
 else
     echo "skipped: FullDiskKeepsWhatWasFinished needs the right to mount a small file system"
@@ -131,6 +188,47 @@ counts_every_rank() {
         [ "$(grep -c busy_ms "$scratch/stats.json")" -eq 2 ]
 }
 check StatisticsOfEveryRank counts_every_rank
+
+# ---- memory, and interrupts while ranks share form factors
+
+value() { # NAME FILE: the largest of all numbers of this name
+    sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" "$2" | sort -n | tail -n 1
+}
+memory="$rooms --method radiosity --patches 3000 --shadow-map 64 --size 48x48 --threads 1"
+memory_is_planned() { # a rank holds no more than the plan foretold and 15 %, and less than a third of what one process holds
+    ranks mpich 3 render $memory -o "$scratch/ranks.pfm" --stats "$scratch/stats.json" &&
+        planned=$(value planned_bytes "$scratch/stats.json") held=$(value peak_bytes "$scratch/stats.json") &&
+        "$build/vpl" render $memory -o "$scratch/whole.pfm" --quiet --stats "$scratch/whole.json" &&
+        cmp "$scratch/whole.pfm" "$scratch/ranks.pfm" &&
+        echo "planned $planned, held $held, by one process $(value peak_bytes "$scratch/whole.json")" &&
+        [ $((held * 100)) -lt $((planned * 115)) ] &&
+        [ $((3 * held)) -lt "$(value peak_bytes "$scratch/whole.json")" ]
+}
+check MemoryOfARankIsAsPlanned memory_is_planned
+prints_memory() {
+    ranks openmpi 3 render $memory --dry-run >"$scratch/plan" && grep -q "most memory  *about" "$scratch/plan" &&
+        grep -q "^3 ranks: each needs this memory" "$scratch/plan" && [ "$(grep -c "most memory" "$scratch/plan")" -eq 1 ]
+}
+check DryRunTellsTheMemoryOfARank prints_memory
+ends_in_time() { # IMPLEMENTATION: SIGTERM to all ranks while they compute form factors
+    rm -f "$scratch/errors" "$scratch/no.pfm"
+    ranks "$1" 3 render "$rooms" --method radiosity --patches 12000 --threads 1 -o "$scratch/no.pfm" -v 2>"$scratch/errors" &
+    job=$!
+    until [ "$(grep -c 'process [0-9]' "$scratch/errors" 2>/dev/null)" -eq 3 ]; do
+        kill -0 $job || return 1
+        sleep 0.05
+    done
+    sleep 2
+    kill -TERM $(sed -n 's/.*process \([0-9]*\)$/\1/p' "$scratch/errors")
+    sent=$(date +%s)
+    wait $job
+    code=$?
+    took=$(($(date +%s) - sent))
+    [ $code -ne 0 ] && [ $took -le 20 ] && grep -q "cancelled" "$scratch/errors" && [ ! -e "$scratch/no.pfm" ] ||
+        { echo "exit code $code after $took s"; cat "$scratch/errors"; return 1; }
+}
+check SigtermEndsSharedFormFactors_openmpi ends_in_time openmpi
+check SigtermEndsSharedFormFactors_mpich ends_in_time mpich
 
 check SixKilledJobsAreResumed tests/mpi/kill.sh "$build" 6
 

@@ -220,6 +220,13 @@ static void makeRaster(void)
     f.tile = (vplTile){.width = 8, .height = 8};
 }
 
+// A team of one exchanges nothing.
+static void exchange(void* user, const void* send, const size_t* sendBytes, void* receive,
+                     const size_t* receiveBytes)
+{
+    (void)user, (void)send, (void)sendBytes, (void)receive, (void)receiveBytes;
+}
+
 static void makeRender(void)
 {
     f.options = vplRenderOptions_Create(f.context);
@@ -237,6 +244,7 @@ static void makeRender(void)
     MUST(vplHistory_Create(f.context, &f.history));
     f.speeds = vplUsualSpeeds();
     f.machine = (vplMachine){1, NULL};
+    f.team = (vplTeam){0, 1, exchange, NULL};
 }
 
 void makeFixture(void)

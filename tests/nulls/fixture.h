@@ -66,6 +66,7 @@ typedef struct Fixture {
     vplMemoryFile file;
     vplSpeeds speeds;
     vplMachine machine;
+    vplTeam team;
     vplTile tile;
     vplHemiMapPlace hemiPlace;
     vplParaboloidPlace paraboloidPlace;

@@ -84,6 +84,7 @@ BY_TYPE = {
     "const vplCameraKey*": "&f.cameraKey", "const vplEmitterKey*": "&f.emitterKey",
     "const vplTransformKey*": "&f.transformKey",
     "const vplMemoryFile*": "&f.file", "const vplSpeeds*": "&f.speeds", "const vplMachine*": "&f.machine",
+    "const vplTeam*": "&f.team",
     "const vplTile*": "&f.tile", "const vplMat4*": "&f.matrix", "const vplParticlePass*": "&f.pass",
     "vplRenderOptions*": "f.options", "vplProgressFcn*": "goOn", "vplTileFcn*": "tileTask",
     "vplLayers*": "NULL", "const void*": "zeros", "const uint8_t*": "zeros", "uint8_t*": "NULL",

@@ -186,6 +186,7 @@ int measureSettings(Tradeoff* t)
     }
     for (int i = 0; i < t->settingCount; i++) {
         t->settings[i].runs = t->runs + (size_t)i * (size_t)seeds;
+        t->settings[i].elsewhere = t->crew != NULL && i % t->crew->count != t->crew->index;
     }
     t->limit = INFINITY;
     warmUp(t);
@@ -197,6 +198,13 @@ int measureSettings(Tradeoff* t)
         measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.8 : 1.0 / rounds));
     }
     measureRound(t, 0, t->deadline); // expensive ones, in the time that other seeds left
+    if (t->crew != NULL) {
+        const int code = t->crew->collectRuns(t->crew->user, t);
+        if (code != EXIT_DONE || t->crew->index > 0) {
+            return code;
+        }
+        summarise(t);
+    }
     explainLeftOut(t);
     restorePictures(t);
     int measured = 0;

@@ -32,7 +32,7 @@ bool isKnob(const Setting* s)
 
 static bool isOpen(const Setting* s, int done)
 {
-    return s->runCount == done && s->problem[0] == 0 && s->leftOut != LEFT_LONG;
+    return s->runCount == done && s->problem[0] == 0 && s->leftOut != LEFT_LONG && !s->elsewhere;
 }
 
 // Values of measured settings of one curve, by ascending amount.

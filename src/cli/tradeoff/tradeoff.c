@@ -88,13 +88,28 @@ static int writeResults(Tradeoff* t)
     return good && !t->interrupted ? EXIT_DONE : EXIT_COULD_NOT;
 }
 
+// Writes the report: alone, or as the first of a crew.
+static bool leads(const Tradeoff* t)
+{
+    return t->crew == NULL || t->crew->index == 0;
+}
+
+static int agree(const Tradeoff* t, int code)
+{
+    return t->crew != NULL ? t->crew->agree(t->crew->user, code) : code;
+}
+
 static int measure(Tradeoff* t)
 {
     t->start = 1e-3 * wallMs();
     t->deadline = t->start + t->arguments->seconds;
     t->limit = INFINITY;
     t->progress = beginProgress(t->arguments->quiet);
-    int code = makeReference(t);
+    int code = leads(t) || t->arguments->reference != NULL ? makeReference(t) : EXIT_DONE;
+    code = agree(t, code);
+    if (code == EXIT_DONE && t->crew != NULL && t->arguments->reference == NULL) {
+        code = t->crew->shareReference(t->crew->user, t);
+    }
     if (code == EXIT_DONE) {
         code = measureSettings(t);
     }
@@ -137,20 +152,22 @@ static int readScene(Tradeoff* t)
 static int run(Tradeoff* t)
 {
     int code = readScene(t);
-    if (code != EXIT_DONE || !listSettings(t)) {
-        return code != EXIT_DONE ? code : EXIT_USAGE;
+    code = agree(t, code == EXIT_DONE && !listSettings(t) ? EXIT_USAGE : code);
+    if (code != EXIT_DONE) {
+        return code;
     }
     catchInterrupts(); // before, an interrupt ends the program: reading a scene may wait for ever
     bool made = false;
     if (t->arguments->reference != NULL) { // before the folder is made: a bad reference leaves none behind
         code = makeReference(t);
     }
-    if (code == EXIT_DONE && !prepareFolder(t->arguments->output, &made)) {
+    if (code == EXIT_DONE && leads(t) && !prepareFolder(t->arguments->output, &made)) {
         code = EXIT_COULD_NOT;
     }
+    code = agree(t, code);
     if (code == EXIT_DONE) {
         code = measure(t);
-        code = code == EXIT_DONE ? writeResults(t) : code;
+        code = code == EXIT_DONE && leads(t) ? writeResults(t) : code;
     }
     if (code != EXIT_DONE && made) {
         rmdir(t->arguments->output); // stays if there is something in it
@@ -174,7 +191,7 @@ static void destroy(Tradeoff* t)
     free(t);
 }
 
-int runTradeoff(const Arguments* a)
+int checkTradeoff(const Arguments* a)
 {
     if (a->output == NULL) {
         complain("tradeoff needs -o DIR, the folder for the report");
@@ -184,12 +201,24 @@ int runTradeoff(const Arguments* a)
         complain("--lighting documented has no truth to measure errors against; tradeoff is for physical");
         return EXIT_USAGE;
     }
+    return EXIT_DONE;
+}
+
+int runTradeoff(const Arguments* a)
+{
+    const int code = checkTradeoff(a);
+    return code == EXIT_DONE ? runTradeoffWith(a, NULL) : code;
+}
+
+int runTradeoffWith(const Arguments* a, const Crew* crew)
+{
     Tradeoff* t = calloc(1, sizeof *t);
     if (t == NULL) {
         complain("out of memory");
         return EXIT_COULD_NOT;
     }
     t->arguments = a;
+    t->crew = crew;
     // One thread unless told otherwise: waiting threads use processor time, too, the more the busier the
     // machine is.
     int workers = a->threadsCount > 0 ? a->context.workerCount : 1;

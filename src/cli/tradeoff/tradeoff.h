@@ -96,6 +96,7 @@ typedef struct Setting {
     double energy;          // median of the ratio to the truth's
     char problem[SENTENCE]; // why it was not measured; empty: it was, or time ran out before
     LeftOut leftOut;        // why else
+    bool elsewhere;         // another process measures it
     double cancelledMs;     // of LEFT_LONG: after so much time
     int number;             // on the front, where 1 is the cheapest; 0: not on the front
     vplImage* image;        // of the first seed, kept while the setting is on the front
@@ -112,7 +113,20 @@ typedef struct Reference {
     double mean;         // of all pixels and channels
 } Reference;
 
-typedef struct Tradeoff {
+typedef struct Tradeoff Tradeoff;
+
+// Processes that measure together, setting i at process i % count; process 0 writes the report (src/mpi/tradeoff.c). Exit
+// codes are those of all processes.
+typedef struct Crew {
+    int index, count;
+    int (*agree)(void* user, int code);                    // the largest code of all
+    int (*shareReference)(void* user, Tradeoff* tradeoff); // gives all the reference of process 0
+    int (*collectRuns)(void* user, Tradeoff* tradeoff);    // brings all runs to process 0
+    void* user;
+} Crew;
+
+struct Tradeoff {
+    const Crew* crew;           // NULL: this process is alone
     const Arguments* arguments; // of the command line; its render options are the base
     vplContext* context;        // in which settings are measured
     vplScene* scene;
@@ -132,7 +146,11 @@ typedef struct Tradeoff {
     bool interrupted;
     char message[SENTENCE]; // the last error of the library
     bool silent;            // errors are kept, not printed
-} Tradeoff;
+};
+
+// vpl tradeoff: complains of its options; runs it, with a crew (may be NULL). Exit codes.
+int checkTradeoff(const Arguments* arguments);
+int runTradeoffWith(const Arguments* arguments, const Crew* crew);
 
 // ---- settings
 

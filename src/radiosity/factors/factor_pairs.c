@@ -25,18 +25,9 @@ enum {
 // (bench/form_factors).
 static const float NEAR = 1.5f;
 
-// The state that all tasks share.
-typedef struct PairWork {
-    const vplFactorWork* work;
-    const vplGeometry* geometry;
-    vplTraceAnyPacketFcn* trace;
-    int64_t *rays, *analyticPairs; // one per task
-    vplFactorSamples* samples;     // two per worker: of the row and of the column, after the first sixteen
-} PairWork;
-
 // All pairs between two blocks of sides.
 typedef struct Tile {
-    const PairWork* shared;
+    const vplPairWork* shared;
     int row, column; // blocks
     float tolerance; // metres
     const vplFactorBlock *a, *b;
@@ -178,7 +169,7 @@ static void estimateRow(Tile* tile, int i)
 
 static uint32_t findBlocked(const Tile* tile, const vplRayPacket* packet)
 {
-    const PairWork* shared = tile->shared;
+    const vplPairWork* shared = tile->shared;
     if (!shared->work->def.bruteForce) {
         return tile->blockers.count < 0 ? vplGeometry_AreOccluded(shared->geometry, packet, 1)
                                         : shared->trace(&tile->blockers.bvh, packet, 1);
@@ -285,7 +276,7 @@ static void joinAll(Tile* tile, int worker)
 
 static void computeTile(Tile* tile, int worker)
 {
-    const PairWork* shared = tile->shared;
+    const vplPairWork* shared = tile->shared;
     uint32_t any = 0;
     tile->tolerance = toleranceOf(tile->a, tile->b);
     memset(tile->sum, 0, sizeof tile->sum);
@@ -320,58 +311,97 @@ static float meanOf(const Tile* tile, int i, int l)
     return tile->blockers.count == 0 ? tile->exact[i][l] : sum > 0 ? tile->exact[i][l] * (visible / sum) : 0;
 }
 
-// Writes F_ij and F_ji, neither above 1 unless they are from incentres.
-static void storeTile(const Tile* tile)
+// Writes F_ij and F_ji, neither above 1 unless they are from incentres. F_ij goes to there[thereStride * i + j], F_ji to
+// back[backStride * j + i].
+static void storeTile(const Tile* tile, float* there, size_t thereStride, float* back, size_t backStride)
 {
-    const vplFactorWork* work = tile->shared->work;
-    const size_t count = (size_t)work->count;
-    for (int i = 0; i < LANES; i++) {
-        const size_t row = (size_t)tile->row * LANES + (size_t)i;
+    const bool bounded = tile->shared->work->def.kind != VPL_FORM_FACTORS_INCENTRE;
+    for (size_t i = 0; i < LANES; i++) {
         for (uint32_t left = tile->pairs[i]; left != 0; left &= left - 1) {
-            const int l = __builtin_ctz(left);
-            const size_t column = (size_t)tile->column * LANES + (size_t)l;
-            const float mean = meanOf(tile, i, l), areaA = tile->a->area[i], areaB = tile->b->area[l];
+            const size_t l = (size_t)__builtin_ctz(left);
+            const float mean = meanOf(tile, (int)i, (int)l), areaA = tile->a->area[i],
+                        areaB = tile->b->area[l];
             const float larger = areaA > areaB ? areaA : areaB;
-            const float used = work->def.kind == VPL_FORM_FACTORS_INCENTRE ? mean : vplMinf(mean, 1 / larger);
-            work->rows[row * count + column] = used * areaB;
-            work->rows[column * count + row] = used * areaA;
+            const float used = bounded ? vplMinf(mean, 1 / larger) : mean;
+            there[i * thereStride + l] = used * areaB;
+            back[l * backStride + i] = used * areaA;
         }
+    }
+}
+
+static void storeInRows(const Tile* tile)
+{
+    const size_t count = (size_t)tile->shared->work->count;
+    const size_t row = (size_t)tile->row * LANES, column = (size_t)tile->column * LANES;
+    float* rows = tile->shared->work->rows;
+    storeTile(tile, rows + row * count + column, count, rows + column * count + row, count);
+}
+
+static void storeInStrip(const Tile* tile, const vplFactorStrip* strip)
+{
+    const size_t columns = (size_t)tile->shared->work->blockCount * LANES;
+    const size_t column = (size_t)tile->column * LANES;
+    float* there = strip->there + column;
+    if (tile->column == tile->row) {
+        storeTile(tile, there, columns, there, columns);
+    } else {
+        storeTile(tile, there, columns, strip->back + column * LANES, LANES);
+    }
+}
+
+void vplPairWork_Fill(const vplPairWork* pairs, int task, int worker, int block, int first, int end,
+                      const vplFactorStrip* strip)
+{
+    const vplFactorWork* work = pairs->work;
+    Tile tile = {.shared = pairs, .row = block, .a = &work->blocks[block]};
+    for (int column = first; column < end; column++) {
+        tile.column = column;
+        tile.b = &work->blocks[column];
+        computeTile(&tile, worker);
+        if (strip != NULL) {
+            storeInStrip(&tile, strip);
+        } else {
+            storeInRows(&tile);
+        }
+    }
+    pairs->rays[task] += tile.rays;
+    pairs->analyticPairs[task] += tile.analyticPairs;
+}
+
+vplResult vplPairWork_Open(vplFactorWork* work, int tasks, vplPairWork* pairsOut)
+{
+    const size_t samples =
+        work->def.samples > VPL_FACTOR_SAMPLES ? 2 * (size_t)work->context->workerCount : 0;
+    *pairsOut =
+        (vplPairWork){.work = work,
+                      .geometry = work->sides->patches->geometry,
+                      .trace = vplGetRayKernels(work->context->isa)->anyPacket,
+                      .rays = vplArena_AllocZero(work->scratch, (size_t)tasks, sizeof *pairsOut->rays),
+                      .analyticPairs = vplArena_AllocZero(work->scratch, (size_t)tasks, sizeof(int64_t)),
+                      .samples = vplArena_AllocZero(work->scratch, samples, sizeof *pairsOut->samples)};
+    return vplArena_Check(work->scratch);
+}
+
+void vplPairWork_Count(const vplPairWork* pairs, int tasks)
+{
+    for (int i = 0; i < tasks; i++) {
+        pairs->work->factors->rays += pairs->rays[i];
+        pairs->work->factors->analyticPairs += pairs->analyticPairs[i];
     }
 }
 
 static void fillRow(void* data, int row, int worker)
 {
-    const PairWork* shared = data;
-    const vplFactorWork* work = shared->work;
-    Tile tile = {.shared = shared, .row = row, .a = &work->blocks[row]};
-    for (int column = row; column < work->blockCount; column++) {
-        tile.column = column;
-        tile.b = &work->blocks[column];
-        computeTile(&tile, worker);
-        storeTile(&tile);
-    }
-    shared->rays[row] = tile.rays;
-    shared->analyticPairs[row] = tile.analyticPairs;
+    const vplPairWork* pairs = data;
+    vplPairWork_Fill(pairs, row, worker, row, row, pairs->work->blockCount, NULL);
 }
 
 vplResult vplFactorWork_FillRows(vplFactorWork* work)
 {
-    const vplGeometry* g = work->sides->patches->geometry;
-    const size_t tasks = (size_t)work->blockCount;
-    const size_t samples =
-        work->def.samples > VPL_FACTOR_SAMPLES ? 2 * (size_t)work->context->workerCount : 0;
-    PairWork shared = {.work = work,
-                       .geometry = g,
-                       .trace = vplGetRayKernels(work->context->isa)->anyPacket,
-                       .rays = vplArena_AllocZero(work->scratch, tasks, sizeof *shared.rays),
-                       .analyticPairs = vplArena_AllocZero(work->scratch, tasks, sizeof(int64_t)),
-                       .samples = vplArena_AllocZero(work->scratch, samples, sizeof *shared.samples)};
-    TRY(vplArena_Check(work->scratch));
-    TRY(vplParallelForProgress(work->context, work->blockCount, fillRow, &shared,
+    vplPairWork pairs;
+    TRY(vplPairWork_Open(work, work->blockCount, &pairs));
+    TRY(vplParallelForProgress(work->context, work->blockCount, fillRow, &pairs,
                                (vplProgressRange){work->def.progress, work->def.progressUser, 0, 1}));
-    for (int i = 0; i < work->blockCount; i++) {
-        work->factors->rays += shared.rays[i];
-        work->factors->analyticPairs += shared.analyticPairs[i];
-    }
+    vplPairWork_Count(&pairs, work->blockCount);
     return VPL_SUCCESS;
 }

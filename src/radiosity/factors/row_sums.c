@@ -20,7 +20,13 @@ typedef struct Scaling {
     const vplFactorWork* work;
     double *scale, *sum; // per row: s_i, and the sum of F_ij s_j
     float* target;       // the wanted sum of each row; NULL: 1
+    vplTeamMail mail;
 } Scaling;
+
+static float* roomOf(const Scaling* s, int worker)
+{
+    return s->work->rooms + (size_t)worker * vplSharedRows_Columns(s->work->shared);
+}
 
 static void sumRow(void* data, int row, int worker)
 {
@@ -30,12 +36,45 @@ static void sumRow(void* data, int row, int worker)
     s->sum[row] = s->work->kernels->scaledSum(s->work->rows + (size_t)row * (size_t)count, s->scale, count);
 }
 
+static void sumOwnRow(void* data, int own, int worker)
+{
+    const Scaling* s = data;
+    const vplSharedRows* shared = s->work->shared;
+    const int row = own * shared->members + shared->member;
+    float* room = roomOf(s, worker);
+    vplSharedRows_Decode(shared, row, room);
+    s->sum[row] = s->work->kernels->scaledSum(room, s->scale, s->work->count);
+}
+
+static vplResult sumRows(Scaling* s)
+{
+    vplContext* context = s->work->context;
+    const vplSharedRows* shared = s->work->shared;
+    if (shared == NULL) {
+        return vplParallelForAsking(context, s->work->count, sumRow, s);
+    }
+    const vplTeamRows rows = {s->sum, sizeof *s->sum, 0, s->work->count};
+    return vplTeam_ShareRows(context, vplParallelForAsking(context, shared->ownCount, sumOwnRow, s), &s->mail,
+                             &rows);
+}
+
 static void scaleRow(void* data, int row, int worker)
 {
     (void)worker;
     const Scaling* s = data;
     const int count = s->work->count;
     s->work->kernels->scaleRow(s->work->rows + (size_t)row * (size_t)count, s->scale[row], s->scale, count);
+}
+
+static void scaleOwnRow(void* data, int own, int worker)
+{
+    const Scaling* s = data;
+    const vplSharedRows* shared = s->work->shared;
+    const int row = own * shared->members + shared->member;
+    float* room = roomOf(s, worker);
+    vplSharedRows_Decode(shared, row, room);
+    s->work->kernels->scaleRow(room, s->scale[row], s->scale, s->work->count);
+    vplSharedRows_Encode(shared, row, room);
 }
 
 // Moves the sum of each row half of the way to 1; a clamp only moves rows above 1. Returns the largest change
@@ -71,13 +110,14 @@ static vplResult scaleRows(Scaling* s, bool clamp)
     vplContext* context = s->work->context;
     for (int round = 0; round < MOST_ROUNDS; round++) {
         const double step = improve(s, clamp);
-        TRY(vplParallelForAsking(context, s->work->count, sumRow, s));
+        TRY(sumRows(s));
         if (step < ENOUGH) {
             break;
         }
     }
     finish(s);
-    return vplParallelForAsking(context, s->work->count, scaleRow, s);
+    return s->work->shared != NULL ? vplParallelForAsking(context, s->work->shared->ownCount, scaleOwnRow, s)
+                                   : vplParallelForAsking(context, s->work->count, scaleRow, s);
 }
 
 vplResult vplFactorWork_CorrectRows(vplFactorWork* work)
@@ -87,12 +127,15 @@ vplResult vplFactorWork_CorrectRows(vplFactorWork* work)
     Scaling s = {.work = work,
                  .scale = vplArena_Alloc(work->scratch, count, sizeof *s.scale),
                  .sum = vplArena_Alloc(work->scratch, count, sizeof *s.sum)};
-    TRY(vplArena_Check(work->scratch));
+    if (work->shared != NULL) {
+        s.mail = vplTeamMail_Alloc(work->context, work->scratch, work->count, sizeof *s.sum);
+    }
+    TRY(vplTeam_Agree(work->context, vplArena_Check(work->scratch)));
     double most = 0;
     for (size_t i = 0; i < count; i++) {
         s.scale[i] = 1;
     }
-    TRY(vplParallelForAsking(work->context, work->count, sumRow, &s));
+    TRY(sumRows(&s));
     for (size_t i = 0; i < count; i++) {
         work->rowSums[i] = (float)s.sum[i];
         most = s.sum[i] > most ? s.sum[i] : most;
@@ -101,8 +144,11 @@ vplResult vplFactorWork_CorrectRows(vplFactorWork* work)
                        (def->rowSums == VPL_ROW_SUMS_USUAL && def->kind == VPL_FORM_FACTORS_MONTE_CARLO);
     if (def->rowSums == VPL_ROW_SUMS_USUAL && work->sides->patches->groupCount > 0) {
         s.target = vplArena_Alloc(work->scratch, count, sizeof *s.target);
-        TRY(vplArena_Check(work->scratch));
-        TRY(vplPatchSides_FindHitShares(work->sides, def->seed, s.target, &work->factors->rays));
+        vplResult result = vplArena_Check(work->scratch);
+        if (result == VPL_SUCCESS) {
+            result = vplPatchSides_FindHitShares(work->sides, def->seed, s.target, &work->factors->rays);
+        }
+        TRY(vplTeam_Agree(work->context, result));
         return scaleRows(&s, false);
     }
     if (def->rowSums == VPL_ROW_SUMS_NORMALISE || (clamp && most > MARGIN)) {

@@ -7,6 +7,7 @@
 
 enum {
     ROWS = 16,       // per task
+    OWN_ROWS = 4,    // per task, of a team; 1 where there are only the rows of a block of Gauss-Seidel
     MOST_ROUNDS = 64 // of the power method
 };
 
@@ -23,6 +24,12 @@ vplResult vplTransport_Check(const vplTransport* t)
                        "vplTransport has %d sides, but its %s were made for %d", t->sides->count,
                        t->factors ? "form factors" : "links", count);
     }
+    const vplSharedRows* shared = t->factors ? vplFormFactors_GetShared(t->factors) : NULL;
+    if (shared != NULL && (context->team.count != shared->members || context->team.index != shared->member)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "form factors that %d processes share are of no use without that team",
+                       shared->members);
+    }
     return VPL_SUCCESS;
 }
 
@@ -37,6 +44,11 @@ vplResult vplExchange_Open(vplArena* scratch, const vplTransport* transport, vpl
     e->sums = vplArena_AllocZero(scratch, (size_t)e->count, sizeof *e->sums);
     if (transport->factors == NULL) {
         e->nodes = vplLinkScratch_Alloc(scratch, transport->links);
+    } else if (vplFormFactors_GetShared(transport->factors) != NULL) {
+        e->shared = vplFormFactors_GetShared(transport->factors);
+        e->rooms = vplArena_Alloc(scratch, (size_t)context->workerCount * vplSharedRows_Columns(e->shared),
+                                  sizeof *e->rooms);
+        e->mail = vplTeamMail_Alloc(context, scratch, e->count, sizeof *e->sums);
     }
     TRY(vplArena_Check(scratch));
     for (int i = 0; i < e->count; i++) {
@@ -54,6 +66,7 @@ typedef struct Rows {
     vplExchange* exchange;
     const vplPlanes* x;
     int first, end;
+    int step; // rows of all members of a team while one does a task
 } Rows;
 
 static void gatherTask(void* data, int task, int worker)
@@ -68,9 +81,37 @@ static void gatherTask(void* data, int task, int worker)
     }
 }
 
+// Multiplies own rows of a team.
+static void gatherOwnTask(void* data, int task, int worker)
+{
+    const Rows* r = data;
+    const vplExchange* e = r->exchange;
+    const vplSharedRows* s = e->shared;
+    const int from = vplTeam_FirstRow(r->first, s->member, s->members) + task * r->step;
+    float* room = e->rooms + (size_t)worker * vplSharedRows_Columns(s);
+    for (int i = from; i < vplMini(from + r->step, r->end); i += s->members) {
+        vplSharedRows_Decode(s, i, room);
+        e->kernels->rowDot(room, r->x, e->count, e->sums[i]);
+    }
+}
+
+static vplResult gatherShared(Rows* r)
+{
+    vplExchange* e = r->exchange;
+    const int count = r->end - r->first;
+    const vplTeamRows rows = {e->sums, sizeof *e->sums, r->first, r->end};
+    r->step = e->shared->members * (count > VPL_SWEEP_ROWS ? OWN_ROWS : 1);
+    return vplTeam_ShareRows(
+        e->context, vplParallelForAsking(e->context, (count + r->step - 1) / r->step, gatherOwnTask, r),
+        &e->mail, &rows);
+}
+
 vplResult vplExchange_GatherRows(vplExchange* exchange, const vplPlanes* x, int first, int end)
 {
-    Rows rows = {exchange, x, first, end};
+    Rows rows = {exchange, x, first, end, ROWS};
+    if (exchange->shared != NULL) {
+        return gatherShared(&rows);
+    }
     const int tasks = (end - first + ROWS - 1) / ROWS;
     // One thread multiplies 2^20 factors in about 0.3 ms. Parallel tasks do not pay below that: a sweep of
     // Gauss-Seidel over 3,584 sides took 33 ms instead of 14 on a busy machine.

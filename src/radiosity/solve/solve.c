@@ -55,6 +55,12 @@ static vplResult checkDef(const vplTransport* t, const vplSolveDef* def)
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplSolveDef.residual is %g, must be in [0, 1]",
                        def->residual);
     }
+    if (def->solver == VPL_SOLVER_SHOOTING && t->factors != NULL &&
+        vplFormFactors_GetShared(t->factors) != NULL) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "shooting takes a whole row for each shot, and no process of a team has all: "
+                       "vplSolveDef.solver must be another");
+    }
     return vplTransport_Check(t);
 }
 
@@ -114,6 +120,14 @@ static void warnOfMissingLight(const vplSolve* s, bool done, double shrink)
            s->stats.iterations, residual, wanted, share);
 }
 
+static vplResult report(const vplSolve* s, double fraction)
+{
+    const vplSolveDef* def = s->def;
+    const bool goesOn = def->progress == NULL || def->progress(def->progressUser, fraction);
+    const vplResult result = goesOn ? VPL_SUCCESS : VPL_CANCELLED;
+    return s->exchange.shared != NULL ? vplTeam_Agree(s->exchange.context, result) : result;
+}
+
 static vplResult sweepAll(vplSolve* s)
 {
     const vplSolveDef* def = s->def;
@@ -121,9 +135,7 @@ static vplResult sweepAll(vplSolve* s)
     int growing = 0;
     bool done = false;
     for (int i = 0; i < def->iterations && !done; i++) {
-        if (def->progress != NULL && !def->progress(def->progressUser, (double)i / def->iterations)) {
-            return VPL_CANCELLED;
-        }
+        TRY(report(s, (double)i / def->iterations));
         TRY(vplSolve_Sweep(s));
         s->stats.iterations = i + 1;
         s->stats.residual = s->largest > 0 ? s->change / s->largest : 0;
@@ -165,11 +177,18 @@ static vplResult reserve(vplArena* arena, vplSolve* s)
     return vplArena_Check(arena);
 }
 
+// A member of a team that fails tells the others.
+static vplResult agree(const vplTransport* transport, vplResult mine)
+{
+    const vplFormFactors* f = transport->factors;
+    return f != NULL && vplFormFactors_GetShared(f) != NULL ? vplTeam_Agree(f->context, mine) : mine;
+}
+
 static vplResult solveWith(vplArena* arena, const vplTransport* transport, vplSolve* s, const vplRgb* source,
                            vplRgb* radiosity)
 {
-    TRY(vplExchange_Open(arena, transport, &s->exchange));
-    TRY(reserve(arena, s));
+    const vplResult opened = vplExchange_Open(arena, transport, &s->exchange);
+    TRY(agree(transport, opened == VPL_SUCCESS ? reserve(arena, s) : opened));
     vplPlanes_Read(&s->source, source, s->exchange.count);
     vplPlanes_Read(&s->radiosity, radiosity, s->exchange.count);
     if (s->stats.solver == VPL_SOLVER_SHOOTING) {
@@ -195,7 +214,7 @@ vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* de
     const vplSolver solver = transport->factors != NULL ? def->solver : VPL_SOLVER_JACOBI;
     vplSolve s = {.def = def, .stats = {.solver = solver}};
     vplArena* arena = vplArena_Create(transport->sides->context);
-    const vplResult result = solveWith(arena, transport, &s, source, radiosity);
+    const vplResult result = agree(transport, solveWith(arena, transport, &s, source, radiosity));
     vplArena_Destroy(arena);
     if (result == VPL_SUCCESS && statsOut != NULL) {
         *statsOut = s.stats;
@@ -212,7 +231,7 @@ static vplResult gather(vplArena* scratch, const vplTransport* transport, const 
     vplExchange e;
     TRY(vplExchange_Open(scratch, transport, &e));
     vplPlanes planes = vplPlanes_Alloc(scratch, e.count);
-    TRY(vplArena_Check(scratch));
+    TRY(agree(transport, vplArena_Check(scratch)));
     vplPlanes_Read(&planes, radiosity, e.count);
     TRY(vplExchange_Gather(&e, &planes));
     for (int i = 0; i < e.count; i++) {
@@ -237,7 +256,7 @@ static vplResult checkAndGather(const vplTransport* transport, const vplRgb* sou
     }
     TRY(checkValues(transport, radiosity, "radiosity"));
     vplArena* scratch = vplArena_Create(transport->sides->context);
-    const vplResult result = gather(scratch, transport, source, radiosity, out);
+    const vplResult result = agree(transport, gather(scratch, transport, source, radiosity, out));
     vplArena_Destroy(scratch);
     return result;
 }

@@ -3,6 +3,7 @@
 #ifndef VPL_RADIOSITY_SOLVE_H
 #define VPL_RADIOSITY_SOLVE_H
 
+#include "radiosity/factors/shared_rows.h"
 #include "radiosity/links/links.h"
 #include "radiosity/sides/side.h"
 
@@ -14,11 +15,15 @@ typedef struct vplExchange {
     const vplRadiosityKernels* kernels;
     int count;
     vplPlanes reflectance;
-    double (*sums)[3];    // results of the last vplExchange_Gather
-    vplLinkScratch nodes; // for links
+    double (*sums)[3];           // results of the last vplExchange_Gather
+    vplLinkScratch nodes;        // for links
+    const vplSharedRows* shared; // form factors of a team; NULL: of this process alone
+    float* rooms;                // for its rows, one per worker
+    vplTeamMail mail;
 } vplExchange;
 
-// VPL_INVALID_ARGUMENT unless the transport has either factors or links, for as many sides as it has.
+// VPL_INVALID_ARGUMENT unless the transport has either factors or links, for as many sides as it has, and the team that
+// shares the factors is there.
 vplResult vplTransport_Check(const vplTransport* transport);
 
 // Allocates from `scratch`.

@@ -14,7 +14,7 @@
 // Gauss-Seidel takes the products of this many rows with the old radiosities at once, in parallel where there
 // are many sides. The changes by earlier rows of the block are added afterwards, in order: the algorithm's
 // sums up to rounding, whose bits do not depend on the number of workers.
-enum { BLOCK = 64 };
+enum { BLOCK = VPL_SWEEP_ROWS };
 
 // Updates the sweep's largest change and radiosity.
 static void recordChange(vplSolve* s, double old, double now)
@@ -44,13 +44,20 @@ static vplResult sweepJacobi(vplSolve* s)
     return VPL_SUCCESS;
 }
 
+// The factors of row i from column `first` on, where the block of rows begins.
+static const float* rowFrom(const vplExchange* e, int i, int first)
+{
+    const vplFormFactors* f = e->transport->factors;
+    return e->shared != NULL ? e->shared->nearby + (size_t)i * VPL_SWEEP_ROWS
+                             : f->rows + (size_t)i * (size_t)f->count + first;
+}
+
 static vplResult sweepBlock(vplSolve* s, int first, int end)
 {
-    const vplFormFactors* f = s->exchange.transport->factors;
     double more[BLOCK][3];
     TRY(vplExchange_GatherRows(&s->exchange, &s->radiosity, first, end));
     for (int i = first; i < end; i++) {
-        const float* row = f->rows + (size_t)i * (size_t)f->count + first;
+        const float* row = rowFrom(&s->exchange, i, first);
         double sum[3] = {s->exchange.sums[i][0], s->exchange.sums[i][1], s->exchange.sums[i][2]};
         for (int k = 0; k < i - first; k++) {
             const double factor = (double)row[k];
@@ -66,7 +73,7 @@ static vplResult sweepBlock(vplSolve* s, int first, int end)
             s->radiosity.c[c][i] = now;
         }
     }
-    return vplAsk(s->exchange.context);
+    return s->exchange.shared != NULL ? VPL_SUCCESS : vplAsk(s->exchange.context); // a team has asked
 }
 
 static vplResult sweepGaussSeidel(vplSolve* s)
