@@ -198,11 +198,13 @@ faults: test-programs
 	VPL_EVERY_ALLOCATION=1 $(BUILD)/vpl-tests FailedAllocationsOfEveryMethod
 	tests/signals.sh $(BUILD)/vpl 300
 
-## make test-mpi    vpl-mpi: installs OpenMPI and MPICH, builds it with both, tests it with 1 to 8 ranks
+## make test-mpi    vpl-mpi: installs OpenMPI, MPICH and Slurm, builds it with both, tests 1 to 8 ranks and the batch scripts
 test-mpi: deps
 	@.ci/install-deps libopenmpi-dev openmpi-bin libmpich-dev mpich
 	@$(MAKE) --no-print-directory $(JOBS) programs $(BUILD)/vpl-mpi.openmpi $(BUILD)/vpl-mpi.mpich
 	@tests/mpi/run.sh $(BUILD)
+	@.ci/install-deps slurm-wlm munge || true # without them the batch scripts are not tested
+	@tests/mpi/slurm.sh $(BUILD)
 
 ## make install     libraries, headers, program, man page, libvpl.pc and a CMake package under PREFIX (/usr/local)
 LIBDIR  ?= $(PREFIX)/lib
