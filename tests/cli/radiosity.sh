@@ -40,7 +40,7 @@ cat >"$scratch/white.json" <<'END'
 END
 refuses IncentresThatDivergeAreSaid 2 "row-sums" "$vpl" render "$scratch/white.json" $tiny --patches 12 --form-factors incentre \
     -o "$out/never.png"
-refuses TooManyPairsAreSaid 2 "bytes" "$vpl" render "$room" $tiny --patches 40000 --hierarchy off -o "$out/never.png"
+refuses TooManyPairsAreSaid 2 "bytes" "$vpl" render "$room" $tiny --patches 40000 --hierarchy off --memory 2000 -o "$out/never.png"
 refuses PatchesOfOthersAreSaid 2 "only radiosity" "$vpl" render "$room" --method keller --show residual -o "$out/never.png"
 refuses NoPatchesAreSaid 2 "--patches is \"0\"" "$vpl" render "$room" $tiny --patches 0 -o "$out/never.png"
 
