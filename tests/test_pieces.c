@@ -14,13 +14,23 @@ static vplRenderOptions optionsOf(const char* words)
     return o;
 }
 
+// The hash of a picture, or of all its layers.
+static uint64_t hashOfLayers(const vplLayers* layers)
+{
+    uint64_t hash = 0;
+    for (int i = 0; i < layers->count; i++) {
+        hash = 31 * hash + vplImage_Hash(layers->layers[i].image);
+    }
+    return hash;
+}
+
 static uint64_t hashOfWhole(const vplScene* scene, const vplRenderOptions* o)
 {
-    vplImage* image;
-    vplRenderStats stats;
-    assert_int_equal(vplRender(scene, o, &image, &stats), VPL_SUCCESS);
-    vplImage_Destroy(image);
-    return stats.imageHash;
+    vplLayers* layers;
+    assert_int_equal(vplRenderLayers(scene, o, &layers, NULL), VPL_SUCCESS);
+    const uint64_t hash = hashOfLayers(layers);
+    vplLayers_Destroy(layers);
+    return hash;
 }
 
 // Renders the pieces from the last to the first, each by a renderer of its own, as on another machine, or all by one.
@@ -47,11 +57,15 @@ static uint64_t hashOfPieces(vplContext* context, const vplScene* scene, const v
         vplBytes_Free(context, bytes);
         left = vplAssembly_CountMissing(a);
     }
-    vplRenderer_Destroy(r);
+    vplLayers* layers;
     vplImage* image;
+    assert_int_equal(vplAssembly_GetLayers(a, r, &layers), VPL_SUCCESS);
     assert_int_equal(vplAssembly_GetImage(a, &image), VPL_SUCCESS);
-    const uint64_t hash = vplImage_Hash(image);
+    assert_int_equal(vplImage_Hash(image), vplImage_Hash(layers->images[0]));
+    const uint64_t hash = hashOfLayers(layers);
     vplImage_Destroy(image);
+    vplLayers_Destroy(layers);
+    vplRenderer_Destroy(r);
     vplAssembly_Destroy(a);
     return hash;
 }
@@ -94,7 +108,12 @@ TEST(PiecesHaveTheBitsOfOneRender, 2)
         "--method direct --antialias 8",
         "--method ssvp --first-bounce 40",
         "--method radiosity --patches 60",
-        "--method path --spp 3"};
+        "--method path --spp 3",
+        "--method path --spp 3 --aov all",
+        "--method keller --particles 20 --passes 3 --aov direct,normal",
+        "--method instant-radiosity --particles 8 --passes 2 --aov indirect,depth",
+        "--method ssvp --first-bounce 40 --aov direct,indirect",
+        "--method radiosity --patches 60 --antialias 4 --aov all"};
     vplScene* scene;
     assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {

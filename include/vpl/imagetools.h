@@ -22,7 +22,7 @@ const char* vplImage_GetExtensions(void);
 vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
                           uint8_t** bytesOut, size_t* sizeOut);
 
-// Frees the bytes from vplImage_Encode. NULL is allowed.
+// Frees the bytes from vplImage_Encode and others. NULL is allowed.
 void vplBytes_Free(vplContext* context, uint8_t* bytes);
 
 // Kinds of layers of an .exr file.
@@ -52,6 +52,9 @@ enum { VPL_MAX_LAYER_INDEX = 1 << 24, VPL_MAX_LAYER_NAME = 24 };
 // that occurs twice, an index out of range, or a pixel that is NaN or infinite; VPL_FILE_ERROR;
 // VPL_OUT_OF_MEMORY.
 vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path);
+
+// Encodes the file that vplImage_WriteLayers would write. Free the bytes with vplBytes_Free.
+vplResult vplImage_EncodeLayers(const vplLayer* layers, int count, uint8_t** bytesOut, size_t* sizeOut);
 
 // Reads one layer of an .exr file: the channels R, G and B or X, Y and Z behind NAME and a dot, or the
 // channel NAME alone, which all three values of the picture receive. Errors as vplImage_Read, and

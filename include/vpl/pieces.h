@@ -5,7 +5,7 @@
 #define VPL_PIECES_H
 
 #include <vpl/render.h>
-#include <vpl/imagetools.h>
+#include <vpl/rendertools.h>
 
 VPL_HEADER_BEGIN
 
@@ -20,7 +20,7 @@ typedef struct vplPieceGrid {
 
 // Divides the renderer's picture into at most `bands` bands, as many as its tiles allow. The division follows from the plan
 // and `bands` alone. VPL_INVALID_ARGUMENT for pictures that are not made of pieces: those that a time or an error ends, those
-// with layers, and passes with marks drawn over them.
+// whose edges are traced, and passes with marks drawn over them.
 vplResult vplRenderer_Divide(const vplRenderer* renderer, int bands, vplPieceGrid* gridOut);
 
 // Makes what all pieces of radiosity need: patches, form factors and the light that they exchange. Without it the first piece
@@ -64,6 +64,11 @@ int vplAssembly_CountMissing(const vplAssembly* assembly);
 
 // Gets the whole picture; destroy it with vplImage_Destroy. VPL_INVALID_ARGUMENT names the first piece that is missing.
 vplResult vplAssembly_GetImage(const vplAssembly* assembly, vplImage** imageOut);
+
+// Gets the whole picture with the layers of options.output.aovs, with the bits of vplRenderLayers. The renderer must be of the
+// pieces' scene and options; it draws the layers of surfaces, while direct light is in the pieces. Errors of
+// vplAssembly_GetImage, vplAssembly_CheckRenderer and vplRenderer_GetLayers.
+vplResult vplAssembly_GetLayers(const vplAssembly* assembly, vplRenderer* renderer, vplLayers** layersOut);
 
 VPL_HEADER_END
 

@@ -187,6 +187,9 @@ bool isStdout(const char* path);
 // rendering.
 bool checkOutput(const char* path);
 
+// Checks that -o names a picture format, and one of layers or of frames if these are asked for; complains otherwise.
+bool checkPictureName(const Arguments* arguments);
+
 // How the picture is shown in 8 bits, as --exposure, --tonemap and --show ask for it.
 vplWriteOptions chooseDisplay(const Arguments* arguments);
 void warnOfDisplay(const Arguments* arguments);
@@ -197,6 +200,9 @@ int preparePicture(const Arguments* arguments, vplImage* image, const char* path
 
 // Writes a picture of light by -o, --exposure and --tonemap; an exit code.
 int writeWholePicture(const Arguments* arguments, vplImage* image);
+
+// Writes a picture with layers; an exit code.
+int writeLayers(const vplLayers* layers, const char* path);
 
 // vpl render --tile: returns false after complaining of options that are not for parts; renders a part.
 bool checkTile(const Arguments* arguments);

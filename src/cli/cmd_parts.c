@@ -137,8 +137,7 @@ int runMerge(const Arguments* a)
         complain("merge needs -o FILE, the picture to write");
         return EXIT_USAGE;
     }
-    if (!vplImage_CanWrite(a->output)) {
-        complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());
+    if (!checkPictureName(a)) {
         return EXIT_USAGE;
     }
     if (!checkOutput(a->output)) {

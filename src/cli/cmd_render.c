@@ -150,7 +150,7 @@ int writeWholePicture(const Arguments* a, vplImage* image)
     return writePicture(a, image, a->output, &display);
 }
 
-static int writeLayers(const vplLayers* layers, const char* path)
+int writeLayers(const vplLayers* layers, const char* path)
 {
     return exitCode(vplImage_WriteLayers(layers->layers, layers->count, path), false);
 }
@@ -280,6 +280,24 @@ static int renderScene(const Arguments* a, vplScene* scene)
     return code;
 }
 
+bool checkPictureName(const Arguments* a)
+{
+    const bool layers = a->render.output.aovs != 0;
+    if (!vplImage_CanWrite(a->output)) {
+        complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());
+        return false;
+    }
+    if (layers && !endsWith(a->output, ".exr")) {
+        complain("%s: --aov writes layers into .exr files only", a->output);
+        return false;
+    }
+    if (isStdout(a->output) && (a->frames[1] >= 0 || layers)) {
+        complain("-o %s: standard output takes one picture without layers", a->output);
+        return false;
+    }
+    return true;
+}
+
 // Checks that every file has a name of its own, and that files of one picture are not asked for of several.
 static bool checkFiles(const Arguments* a)
 {
@@ -300,10 +318,6 @@ static bool checkFiles(const Arguments* a)
                          files[i].what);
                 return false;
             }
-        }
-        if (i == 0 && isStdout(a->output) && (a->frames[1] >= 0 || a->render.output.aovs != 0)) {
-            complain("-o %s: standard output takes one picture without layers", a->output);
-            return false;
         }
         if (i > 0 && files[i].path != NULL && isStdout(files[i].path)) {
             complain("%s %s: only -o writes to standard output", files[i].option, files[i].path);
@@ -331,12 +345,7 @@ int runRender(const Arguments* a)
                : !checkOutput(a->output) ? EXIT_COULD_NOT
                                          : runOnScene(a, renderTile);
     }
-    if (!vplImage_CanWrite(a->output)) {
-        complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());
-        return EXIT_USAGE;
-    }
-    if (a->render.output.aovs != 0 && !endsWith(a->output, ".exr")) {
-        complain("%s: --aov writes layers into .exr files only", a->output);
+    if (!checkPictureName(a)) {
         return EXIT_USAGE;
     }
     if (a->errorMap != NULL && !vplImage_CanWrite(a->errorMap)) {

@@ -205,25 +205,44 @@ static vplResult checkLayer(const vplLayer* layer, const vplLayer* first)
     return vplImage_RequireFinite(image, layer->name);
 }
 
-vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path)
+vplResult vplImage_EncodeLayers(const vplLayer* layers, int count, uint8_t** bytesOut, size_t* sizeOut)
 {
-    REQUIRE(NULL, path);
+    REQUIRE(NULL, bytesOut, sizeOut);
     REQUIRE_ARRAY(NULL, layers, count);
-    vplContext* context = layers[0].image->context;
-    const Format* format = findFormat(path);
-    if (format == NULL || format->encode != vplEncodeExr) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "%s: only .exr files have layers", path);
+    if (count < 1) {
+        return vplFail(NULL, VPL_INVALID_ARGUMENT, "vplImage_EncodeLayers: count is %d, must be at least 1",
+                       count);
     }
+    vplContext* context = layers[0].image->context;
     for (int i = 0; i < count; i++) {
         TRY(checkLayer(&layers[i], &layers[0]));
     }
     vplByteBuffer buffer = {.context = context};
     vplResult result = vplEncodeExrLayers(layers, count, &buffer);
     result = result == VPL_SUCCESS && buffer.failed ? VPL_OUT_OF_MEMORY : result;
-    if (result == VPL_SUCCESS) {
-        result = vplWriteFile(context, path, buffer.bytes, buffer.size);
+    if (result != VPL_SUCCESS) {
+        vplFree(context, buffer.bytes);
+        return result;
     }
-    vplFree(context, buffer.bytes);
+    *bytesOut = buffer.bytes;
+    *sizeOut = buffer.size;
+    return VPL_SUCCESS;
+}
+
+vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path)
+{
+    REQUIRE(NULL, path);
+    REQUIRE_ARRAY(NULL, layers, count);
+    vplContext* context = count > 0 ? layers[0].image->context : NULL;
+    const Format* format = findFormat(path);
+    uint8_t* bytes;
+    size_t size;
+    if (format == NULL || format->encode != vplEncodeExr) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "%s: only .exr files have layers", path);
+    }
+    TRY(vplImage_EncodeLayers(layers, count, &bytes, &size));
+    const vplResult result = vplWriteFile(context, path, bytes, size);
+    vplBytes_Free(context, bytes);
     return result;
 }
 

@@ -34,16 +34,19 @@ static bool nameFrame(const Frames* f, int index, char path[PATH_MAX])
     return numberName(a->output, a->frames[0] + index, a->frames[1], path, PATH_MAX);
 }
 
-static vplResult encode(Frames* f, vplImage* image, const char* path, uint8_t** bytesOut, size_t* sizeOut)
+// Encodes a picture, or layers.
+static vplResult encode(Frames* f, vplImage* image, const vplLayers* layers, const char* path,
+                        uint8_t** bytesOut, size_t* sizeOut)
 {
     FrameHeader header = {.hash = vplImage_Hash(image)};
     uint8_t* bytes;
     size_t size;
-    if (preparePicture(f->ranks->arguments, image, path, &f->display) != EXIT_DONE) {
+    if (layers == NULL && preparePicture(f->ranks->arguments, image, path, &f->display) != EXIT_DONE) {
         return VPL_OUT_OF_MEMORY;
     }
     header.exposure = (double)f->display.exposure;
-    TRY(vplImage_Encode(image, path, &f->display, &bytes, &size));
+    TRY(layers != NULL ? vplImage_EncodeLayers(layers->layers, layers->count, &bytes, &size)
+                       : vplImage_Encode(image, path, &f->display, &bytes, &size));
     *sizeOut = sizeof header + size;
     *bytesOut = malloc(*sizeOut);
     if (*bytesOut != NULL) {
@@ -57,13 +60,17 @@ static vplResult encode(Frames* f, vplImage* image, const char* path, uint8_t** 
 static vplResult makeFrame(void* user, int index, uint8_t** bytesOut, size_t* sizeOut)
 {
     Frames* f = user;
-    vplImage* image;
+    const bool layered = f->options.output.aovs != 0;
+    vplImage* image = NULL;
+    vplLayers* layers = NULL;
     char path[PATH_MAX];
     nameFrame(f, index, path); // renderFrames has checked the lengths
     f->options.sequence.frame = f->ranks->arguments->frames[0] + index;
     TRY(vplScene_SetFrame(f->scene, f->options.sequence.frame));
-    TRY(vplRender(f->scene, &f->options, &image, NULL));
-    const vplResult result = encode(f, image, path, bytesOut, sizeOut);
+    TRY(layered ? vplRenderLayers(f->scene, &f->options, &layers, NULL)
+                : vplRender(f->scene, &f->options, &image, NULL));
+    const vplResult result = encode(f, layered ? layers->images[0] : image, layers, path, bytesOut, sizeOut);
+    vplLayers_Destroy(layers);
     vplImage_Destroy(image);
     return result;
 }

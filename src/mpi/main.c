@@ -74,8 +74,7 @@ static bool takeOptions(int* count, const char** words, MpiOptions* o)
 // Complains of what pieces and frames do not have.
 static int checkRender(const Arguments* a)
 {
-    static const char* const OTHERS[] = {"tile",      "aov",        "plan-out",
-                                         "error-map", "no-partial", "checkpoint-every"};
+    static const char* const OTHERS[] = {"tile", "plan-out", "error-map", "no-partial", "checkpoint-every"};
     for (size_t i = 0; i < sizeof OTHERS / sizeof *OTHERS; i++) {
         if (isGiven(a, OTHERS[i])) {
             complain("vpl-mpi renders without --%s", OTHERS[i]);
@@ -89,12 +88,7 @@ static int checkRender(const Arguments* a)
         complain("render needs %s", a->output == NULL ? "-o FILE, the picture to write" : "a scene file");
         return EXIT_USAGE;
     }
-    if (!vplImage_CanWrite(a->output)) {
-        complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());
-        return EXIT_USAGE;
-    }
-    if (a->frames[1] >= 0 && isStdout(a->output)) {
-        complain("-o %s: standard output takes one picture", a->output);
+    if (!checkPictureName(a)) {
         return EXIT_USAGE;
     }
     char reason[64];

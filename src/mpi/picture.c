@@ -142,10 +142,18 @@ static int prepare(Picture* p, const vplScene* scene, Work* work)
 
 static int finish(Picture* p, double start)
 {
+    const Arguments* a = p->ranks->arguments;
     vplImage* image = NULL;
-    int code = exitCode(vplAssembly_GetImage(p->assembly, &image), false);
-    const uint64_t hash = code == EXIT_DONE ? vplImage_Hash(image) : 0;
-    code = code == EXIT_DONE ? writeWholePicture(p->ranks->arguments, image) : code;
+    vplLayers* layers = NULL;
+    uint64_t hash = 0;
+    int code = exitCode(a->render.output.aovs != 0 ? vplAssembly_GetLayers(p->assembly, p->renderer, &layers)
+                                                   : vplAssembly_GetImage(p->assembly, &image),
+                        false);
+    if (code == EXIT_DONE) {
+        hash = vplImage_Hash(layers != NULL ? layers->images[0] : image);
+        code = layers != NULL ? writeLayers(layers, a->output) : writeWholePicture(a, image);
+    }
+    vplLayers_Destroy(layers);
     vplImage_Destroy(image);
     return code == EXIT_DONE ? reportRanks(p->ranks, wallMs() - start, hash) : code;
 }

@@ -4,13 +4,14 @@
 #include "base/context.h"
 #include "render/piece_file.h"
 #include "render/renderer.h"
+#include "render/stages/make.h"
 #include "render/stages/results.h"
 
 #include <string.h>
 
 // A pass that waits for those before it.
 typedef struct Waiting {
-    float* values; // NULL: it does not wait
+    float* values; // and those of direct light, if passes have it; NULL: it does not wait
     double share;
 } Waiting;
 
@@ -19,9 +20,11 @@ struct vplAssembly {
     vplPieceHeader first; // of the first piece that was added; grid.count 0: none was
     vplImage* base;       // direct light of a mean, else the picture
     double* sums;         // of the passes of a mean
-    double* weights;      // of each band
-    int* next;            // the pass of each band that is added next
-    Waiting* waiting;     // of each piece
+    vplImage*
+        direct; // for layers: direct light alone, of a mean the sum of what passes add; NULL: there is none
+    double* weights;  // of each band
+    int* next;        // the pass of each band that is added next
+    Waiting* waiting; // of each piece
     int missing;
 };
 
@@ -43,6 +46,7 @@ static void empty(vplAssembly* a)
         vplFree(a->context, a->waiting[i].values);
     }
     vplImage_Destroy(a->base);
+    vplImage_Destroy(a->direct);
     vplFree(a->context, a->sums);
     vplFree(a->context, a->weights);
     vplFree(a->context, a->next);
@@ -64,6 +68,7 @@ static vplResult startPicture(vplAssembly* a, const vplPieceHeader* h)
     const vplPieceGrid* g = &h->grid;
     vplContext* c = a->context;
     TRY(vplImage_Create(c, g->width, g->height, &a->base));
+    TRY(h->splits ? vplImage_Create(c, g->width, g->height, &a->direct) : VPL_SUCCESS);
     a->first = *h;
     a->sums = h->mean ? vplAllocZero(c, vplValueCount(a->base), sizeof *a->sums) : NULL;
     a->weights = vplAllocZero(c, (size_t)g->bands, sizeof *a->weights);
@@ -83,7 +88,7 @@ static vplResult checkSame(const vplAssembly* a, const vplPieceHeader* h, const 
                        "%s: a part of another picture than the first: %s differ", name,
                        h->scene != f->scene ? "scene or camera" : "options");
     }
-    if (memcmp(&h->grid, &f->grid, sizeof h->grid) != 0 || h->mean != f->mean) {
+    if (memcmp(&h->grid, &f->grid, sizeof h->grid) != 0 || h->mean != f->mean || h->splits != f->splits) {
         return vplFail(a->context, VPL_INVALID_ARGUMENT,
                        "%s: divided in %d bands of %d rows and %d passes, must be in %d of %d and %d as the "
                        "first part",
@@ -116,9 +121,12 @@ static void addPasses(vplAssembly* a, int band)
             return;
         }
         const vplPiecePlace place = vplPieceGrid_Place(g, index);
-        double* sums = a->sums + 3 * (size_t)place.firstRow * (size_t)g->width;
+        const size_t first = 3 * (size_t)place.firstRow * (size_t)g->width;
         for (size_t k = 0; k < place.values; k++) {
-            sums[k] += w->share * (double)w->values[k];
+            a->sums[first + k] += w->share * (double)w->values[k];
+        }
+        for (size_t k = 0; k < place.values && a->direct != NULL; k++) {
+            a->direct->pixels[first + k] += (float)w->share * w->values[place.values + k];
         }
         a->weights[band] += w->share;
         vplFree(a->context, w->values);
@@ -141,16 +149,19 @@ static vplResult take(vplAssembly* a, const vplPieceHeader* h, const uint8_t* by
 {
     const vplPiecePlace place = vplPieceGrid_Place(&h->grid, h->index);
     vplStream s = {.bytes = (uint8_t*)bytes, .at = VPL_PIECE_HEADER_BYTES, .finite = true};
-    float* values = h->mean ? vplAlloc(a->context, place.values, sizeof *values) : NULL;
+    const size_t first = 3 * (size_t)place.firstRow * (size_t)h->grid.width;
+    const size_t count = place.values * (1 + (size_t)h->splits);
+    float* values = h->mean ? vplAlloc(a->context, count, sizeof *values) : NULL;
     if (h->mean && values == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
     if (!h->mean || place.pass == 0) {
-        vplStream_Floats(&s, a->base->pixels + 3 * (size_t)place.firstRow * (size_t)h->grid.width,
-                         place.values);
+        vplStream_Floats(&s, a->base->pixels + first, place.values);
     }
     if (h->mean) {
-        vplStream_Floats(&s, values, place.values);
+        vplStream_Floats(&s, values, count);
+    } else if (h->splits) {
+        vplStream_Floats(&s, a->direct->pixels + first, place.values);
     }
     if (!s.finite) {
         vplFree(a->context, values);
@@ -219,23 +230,55 @@ static vplResult failIncomplete(const vplAssembly* a)
                    a->missing, g->count, place.pass, place.firstRow, place.endRow - 1);
 }
 
-vplResult vplAssembly_GetImage(const vplAssembly* a, vplImage** imageOut)
+// Values of the picture and of its direct light alone, as vplRenderer_GetLayers has them.
+typedef float ResolveFcn(const vplAssembly* a, size_t k, double weight);
+
+static float addMean(const vplAssembly* a, size_t k, double weight)
 {
-    REQUIRE(CONTEXT_OF(a), a, imageOut);
+    return a->first.mean ? (float)((double)a->base->pixels[k] + a->sums[k] / weight) : a->base->pixels[k];
+}
+
+static float addDirect(const vplAssembly* a, size_t k, double weight)
+{
+    const float added = a->direct != NULL ? a->direct->pixels[k] : 0;
+    return a->first.mean ? a->base->pixels[k] + added / (float)weight : added;
+}
+
+static vplResult resolve(const vplAssembly* a, ResolveFcn* valueOf, vplImage** imageOut)
+{
     const vplPieceGrid* g = &a->first.grid;
-    vplImage* image;
-    if (g->count == 0 || a->missing > 0) {
-        return failIncomplete(a);
-    }
-    TRY(vplImage_Create(a->context, g->width, g->height, &image));
-    memcpy(image->pixels, a->base->pixels, vplValueCount(image) * sizeof *image->pixels);
-    for (int band = 0; band < g->bands && a->first.mean; band++) {
+    TRY(vplImage_Create(a->context, g->width, g->height, imageOut));
+    for (int band = 0; band < g->bands; band++) {
         const vplPiecePlace place = vplPieceGrid_Place(g, band * g->passes);
         const size_t first = 3 * (size_t)place.firstRow * (size_t)g->width;
         for (size_t k = first; k < first + place.values; k++) {
-            image->pixels[k] = (float)((double)a->base->pixels[k] + a->sums[k] / a->weights[band]);
+            (*imageOut)->pixels[k] = valueOf(a, k, a->weights[band]);
         }
     }
-    *imageOut = image;
     return VPL_SUCCESS;
+}
+
+vplResult vplAssembly_GetImage(const vplAssembly* a, vplImage** imageOut)
+{
+    REQUIRE(CONTEXT_OF(a), a, imageOut);
+    if (a->first.grid.count == 0 || a->missing > 0) {
+        return failIncomplete(a);
+    }
+    return resolve(a, addMean, imageOut);
+}
+
+vplResult vplAssembly_GetLayers(const vplAssembly* assembly, vplRenderer* renderer, vplLayers** layersOut)
+{
+    REQUIRE(vplRenderer_ContextOf(renderer) ?: CONTEXT_OF(assembly), assembly, renderer, layersOut);
+    vplImage *picture = NULL, *direct = NULL;
+    TRY(vplAssembly_CheckRenderer(assembly, renderer));
+    TRY(vplRunner_RunPlan(&renderer->runner, renderer->plan, VPL_STAGE_GEOMETRY));
+    TRY(vplAssembly_GetImage(assembly, &picture));
+    const vplResult result =
+        renderer->plan->splitsLight ? resolve(assembly, addDirect, &direct) : VPL_SUCCESS;
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(picture);
+        return result;
+    }
+    return vplMakeLayers(&renderer->runner.run, picture, direct, layersOut);
 }

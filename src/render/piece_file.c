@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VERSION = 1, MEAN = 1 };
+enum { VERSION = 1, MEAN = 1, SPLITS = 2 };
 
 static const char MAGIC[8] = {'V', 'P', 'L', 'P', 'I', 'E', 'C', 'E'};
 
@@ -21,7 +21,7 @@ vplPiecePlace vplPieceGrid_Place(const vplPieceGrid* g, int index)
 
 int vplPiece_CountArrays(const vplPieceHeader* h)
 {
-    return h->mean && h->index % h->grid.passes == 0 ? 2 : 1;
+    return 1 + (h->mean && h->index % h->grid.passes == 0) + h->splits;
 }
 
 size_t vplPiece_Size(const vplPieceHeader* h)
@@ -40,7 +40,7 @@ static void streamInt(vplStream* s, int* value)
 
 void vplPiece_StreamHeader(vplStream* s, vplPieceHeader* h)
 {
-    int version = VERSION, flags = h->mean ? MEAN : 0;
+    int version = VERSION, flags = (h->mean ? MEAN : 0) | (h->splits ? SPLITS : 0);
     vplPieceGrid* g = &h->grid;
     uint64_t reserved = 0;
     if (s->writes) {
@@ -57,8 +57,9 @@ void vplPiece_StreamHeader(vplStream* s, vplPieceHeader* h)
     }
     vplStream_Doubles(s, &h->share, 1);
     vplStream_Long(s, &reserved);
-    h->mean = flags == MEAN;
-    if (version != VERSION || (flags != 0 && flags != MEAN)) {
+    h->mean = (flags & MEAN) != 0;
+    h->splits = (flags & SPLITS) != 0;
+    if (version != VERSION || (flags & ~(MEAN | SPLITS)) != 0) {
         h->index = -1;
     }
 }

@@ -14,6 +14,7 @@ typedef struct vplPieceHeader {
     vplPieceGrid grid;
     int index;
     bool mean;    // the picture is its first floats plus the mean of all passes
+    bool splits;  // each pass has its direct light, too, for layers
     double share; // weight of the pass
 } vplPieceHeader;
 
@@ -25,7 +26,7 @@ typedef struct vplPiecePlace {
 
 vplPiecePlace vplPieceGrid_Place(const vplPieceGrid* grid, int index);
 
-// Arrays of `values` floats in a piece: of a mean's first pass, direct light and then the pass.
+// Arrays of `values` floats in a piece: of a mean's first pass, direct light and then the pass. What splits adds is the last.
 int vplPiece_CountArrays(const vplPieceHeader* header);
 
 // Bytes of a whole piece.

@@ -11,7 +11,10 @@
 
 #include <string.h>
 
-enum { PATH_TILE = 16 }; // rows of a tile of the path tracer
+enum {
+    PATH_TILE = 16,  // rows of a tile of the path tracer
+    MOST_ARRAYS = 3, // of a piece
+};
 
 // ---- the division
 
@@ -27,7 +30,6 @@ static const char* findObstacle(const vplRenderer* r)
                  "has --passes N without --budget, --max-error and --quality, and by --method path --spp N"
            : o->path.edgePixels > 0 ? "pixels at edges are chosen from the whole picture: --edge-pixels must "
                                       "be 0 for a picture in pieces"
-           : o->output.aovs != 0    ? "a picture in pieces has no layers: --aov must be none"
            : o->sequence.coherence == VPL_COHERENCE_ON && o->sequence.history != NULL
                ? "frames that depend on the one before are not made of pieces: --coherence must be off"
            : p->progressive && VPL_SHOWS[o->output.show].drawOver != NULL
@@ -102,12 +104,9 @@ static vplResult tracePiece(vplRenderer* r, vplImage** imageOut)
 }
 
 // Draws the piece: direct light and a pass of a mean, or all light. The images have the whole picture's size.
-static vplResult drawPiece(vplRenderer* r, vplImage* images[2])
+static vplResult drawLight(vplRenderer* r, vplImage** images)
 {
     const vplPlan* p = r->plan;
-    if (p->options.method == VPL_METHOD_PATH) {
-        return tracePiece(r, &images[0]);
-    }
     if (p->progressive) {
         const bool first = r->runner.run.pass == 0;
         TRY(first ? drawParts(r, VPL_PART_DIRECT, &images[0]) : VPL_SUCCESS);
@@ -116,6 +115,19 @@ static vplResult drawPiece(vplRenderer* r, vplImage* images[2])
     TRY(drawParts(r, VPL_PART_DIRECT | VPL_PART_INDIRECT, &images[0]));
     const vplShowRow* show = &VPL_SHOWS[p->options.output.show];
     return show->drawOver != NULL ? show->drawOver(&r->runner.run, images[0]) : VPL_SUCCESS;
+}
+
+// Draws the arrays of a piece.
+static vplResult drawPiece(vplRenderer* r, const vplPieceHeader* h, vplImage* images[MOST_ARRAYS])
+{
+    const bool traces = r->plan->options.method == VPL_METHOD_PATH;
+    vplImage** direct = &images[vplPiece_CountArrays(h) - 1];
+    TRY(traces ? tracePiece(r, &images[0]) : drawLight(r, images));
+    if (traces && h->splits) {
+        TRY(vplImage_Create(r->runner.run.context, h->grid.width, h->grid.height, direct));
+        vplResolveDirectPaths(&r->runner.run, *direct);
+    }
+    return h->splits && !traces ? vplRenderer_DrawDirect(r, direct) : VPL_SUCCESS;
 }
 
 vplResult vplRenderer_HashOptions(const vplRenderer* r, uint64_t* hashOut)
@@ -128,7 +140,7 @@ vplResult vplRenderer_HashOptions(const vplRenderer* r, uint64_t* hashOut)
 }
 
 // Writes the rows of the images as a piece.
-static vplResult writePiece(vplContext* context, vplPieceHeader* h, vplImage* images[2], uint8_t** bytesOut)
+static vplResult writePiece(vplContext* context, vplPieceHeader* h, vplImage** images, uint8_t** bytesOut)
 {
     const vplPiecePlace place = vplPieceGrid_Place(&h->grid, h->index);
     vplStream s = {.bytes = vplAlloc(context, vplPiece_Size(h), 1), .writes = true};
@@ -151,7 +163,7 @@ vplResult vplRenderer_MakePiece(vplRenderer* r, const vplPieceGrid* grid, int in
 {
     REQUIRE(vplRenderer_ContextOf(r), r, grid, bytesOut, sizeOut);
     vplRun* run = &r->runner.run;
-    vplImage* images[2] = {NULL, NULL};
+    vplImage* images[MOST_ARRAYS] = {NULL};
     vplPieceGrid own;
     TRY(vplRenderer_Divide(r, grid->bands, &own));
     if (memcmp(&own, grid, sizeof own) != 0 || index < 0 || index >= own.count) {
@@ -164,6 +176,7 @@ vplResult vplRenderer_MakePiece(vplRenderer* r, const vplPieceGrid* grid, int in
                         .grid = own,
                         .index = index,
                         .mean = r->plan->progressive,
+                        .splits = vplPassesSplitLight(r->plan),
                         .share = r->plan->progressive ? vplShareOfPass(r->plan, place.pass) : 1};
     TRY(vplRenderer_HashOptions(r, &h.options));
     run->pass = place.pass;
@@ -171,11 +184,12 @@ vplResult vplRenderer_MakePiece(vplRenderer* r, const vplPieceGrid* grid, int in
     run->endRow = place.endRow;
     r->runner.stepFrom = r->runner.reported = 0;
     r->runner.stepTo = 1;
-    vplResult result = drawPiece(r, images);
+    vplResult result = drawPiece(r, &h, images);
     run->firstRow = run->endRow = 0;
     result = result == VPL_SUCCESS ? writePiece(run->context, &h, images, bytesOut) : result;
-    vplImage_Destroy(images[0]);
-    vplImage_Destroy(images[1]);
+    for (int i = 0; i < MOST_ARRAYS; i++) {
+        vplImage_Destroy(images[i]);
+    }
     *sizeOut = result == VPL_SUCCESS ? vplPiece_Size(&h) : *sizeOut;
     return result;
 }

@@ -239,17 +239,29 @@ vplResult vplRenderer_OpenSums(vplRenderer* r)
     return VPL_SUCCESS;
 }
 
-// Renders direct light alone for layers: once if there is one pass, else what each pass adds to it.
+bool vplPassesSplitLight(const vplPlan* p)
+{
+    const bool onSurfaces = p->options.method == VPL_METHOD_KELLER && (p->hasAreaLights || p->hasSky);
+    return p->splitsLight && (!p->progressive || onSurfaces);
+}
+
+vplResult vplRenderer_DrawDirect(vplRenderer* r, vplImage** imageOut)
+{
+    r->runner.run.parts = VPL_PART_EMITTER_LIGHTS | (r->plan->progressive ? 0 : VPL_PART_DIRECT);
+    TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
+    *imageOut = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+    return VPL_SUCCESS;
+}
+
+// Adds the direct light of a pass to that of the passes before.
 static vplResult addDirect(vplRenderer* r)
 {
     const vplPlan* p = r->plan;
-    const bool onSurfaces = p->options.method == VPL_METHOD_KELLER && (p->hasAreaLights || p->hasSky);
-    if (!p->splitsLight || (p->progressive && !onSurfaces)) {
+    vplImage *image, *before = r->direct;
+    if (!vplPassesSplitLight(p)) {
         return VPL_SUCCESS;
     }
-    r->runner.run.parts = VPL_PART_EMITTER_LIGHTS | (p->progressive ? 0 : VPL_PART_DIRECT);
-    TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
-    vplImage *image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE), *before = r->direct;
+    TRY(vplRenderer_DrawDirect(r, &image));
     const float share = (float)vplShareOfPass(p, r->done);
     for (size_t k = 0; k < vplValueCount(image) && p->progressive; k++) {
         image->pixels[k] = share * image->pixels[k] + (before != NULL ? before->pixels[k] : 0);

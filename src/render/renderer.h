@@ -98,6 +98,12 @@ uint64_t vplRenderer_HashScene(const vplRenderer* renderer);
 // The hash of all options of the plan, which pieces carry (pieces.c). VPL_OUT_OF_MEMORY.
 vplResult vplRenderer_HashOptions(const vplRenderer* renderer, uint64_t* hashOut);
 
+// True if layers need direct light alone of each pass. If it is the same in all passes, it is drawn only once, as the base.
+bool vplPassesSplitLight(const vplPlan* plan);
+
+// Draws direct light alone, for layers; of several passes, what the pass adds to it. The pass itself must be drawn before.
+vplResult vplRenderer_DrawDirect(vplRenderer* renderer, vplImage** imageOut);
+
 // Makes sums of passes, all 0.
 vplResult vplRenderer_OpenSums(vplRenderer* renderer);
 

@@ -10,14 +10,15 @@ room=examples/scenes/room-area.json
 same_picture() { # IMPLEMENTATION N OPTION...
     implementation=$1 number=$2
     shift 2
-    rm -f "$scratch/ranks.pfm"
-    ranks "$implementation" "$number" render -o "$scratch/ranks.pfm" --quiet "$@" &&
-        cmp "$scratch/whole.pfm" "$scratch/ranks.pfm"
+    rm -f "$scratch/ranks.$kind"
+    ranks "$implementation" "$number" render -o "$scratch/ranks.$kind" --quiet "$@" &&
+        cmp "$scratch/whole.$kind" "$scratch/ranks.$kind"
 }
+kind=pfm
 picture() { # NAME SCENE OPTION...
     name=$1
     shift
-    "$build/vpl" render -o "$scratch/whole.pfm" --quiet "$@" || exit 1
+    "$build/vpl" render -o "$scratch/whole.$kind" --quiet "$@" || exit 1
     for implementation in openmpi mpich; do
         for number in 1 2 3 5 8; do
             check "${name}_of_${number}_ranks_$implementation" same_picture $implementation $number "$@"
@@ -37,6 +38,15 @@ picture Adaptive "$room" --method radiosity --patches 100 --patch-placement adap
 picture Links "$rooms" --method radiosity --patches 200 --hierarchy on --size 48x150 --threads 1
 picture Ssvp "$room" --method ssvp --first-bounce 16 --second-bounce 16 --size 48x150 --threads 1
 picture FilesOfTheScene examples/scenes/textured-room.json --method direct --size 48x150 --threads 1
+
+# Layers, where OpenEXR is built in.
+if "$build/vpl" render "$room" -o "$scratch/whole.exr" --size 4x4 --method direct --quiet 2>"$scratch/errors"; then
+    kind=exr
+    picture LayersOfPaths "$room" --method path --spp 4 --size 48x150 --threads 1 --aov all
+    picture LayersOfPasses "$room" --method keller --particles 20 --passes 5 --size 48x150 --threads 1 --aov all
+    picture LayersOfPatches "$rooms" --method radiosity --patches 300 --size 48x150 --threads 1 --aov direct,albedo,object
+    kind=pfm
+fi
 
 same_patches() { # IMPLEMENTATION N OPTION...
     implementation=$1 number=$2
@@ -83,6 +93,14 @@ same_frames() { # IMPLEMENTATION N OPTION...
         cmp "$frame" "$scratch/ranks-${frame##*-}" || return 1
     done
 }
+layers_of_frames() {
+    frames="examples/scenes/room-path.json --frames 0:3 --method path --spp 2 --size 48x32 --threads 1 --aov direct,normal --quiet"
+    "$build/vpl" render $frames -o "$scratch/alone.exr" && ranks mpich 3 render $frames -o "$scratch/shared.exr" || return 1
+    for frame in "$scratch"/alone-*; do
+        cmp "$frame" "$scratch/shared-${frame##*-}" || return 1
+    done
+}
+[ ! -e "$scratch/whole.exr" ] || check LayersOfFrames layers_of_frames
 sequence="examples/scenes/room-path.json --frames 0:6 --method keller --particles 20 --size 48x32 --threads 1"
 "$build/vpl" render $sequence -o "$scratch/whole.png" --quiet
 for implementation in openmpi mpich; do
