@@ -20,6 +20,8 @@ static const char* const CASES[] = {
     "--method keller --particles 30 --budget 150",
     "--method keller --particles 30 --max-error 0.2",
     "--method keller --particles 30 --light-shadows ray --passes 2",
+    "--method keller --particles 30 --passes 3 --edge-pixels 60 --edge-paths 6",
+    "--method auto --max-error 0.1",
     "--method keller --particles 30 --light-shadows map --compensation none",
     "--method keller --particles 3 --light-shadows auto --passes 3 --min-distance 0.1",
     "--method keller --pipeline lightcuts --particles 40 --antialias 8 --show indirect",

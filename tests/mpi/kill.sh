@@ -18,7 +18,7 @@ random() { # sets $drawn to a number below $1
 }
 # start IMPLEMENTATION N ARGUMENT...: in the background; the processes of the ranks are in $pids.
 start() {
-    rm -f "$scratch/errors"
+    : >"$scratch/errors"
     ranks "$@" -v 2>"$scratch/errors" &
     job=$!
     until [ "$(grep -c 'process [0-9]' "$scratch/errors" 2>/dev/null)" -eq "$2" ]; do
