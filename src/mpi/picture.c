@@ -12,6 +12,10 @@
 // more than dynamic scheduling needs: with 4 the last piece is at most a quarter of a rank's work.
 enum { PIECES_PER_RANK = 4 };
 
+// A piece that the plan expects to take less time than this is not divided further: it costs two messages and the setup of
+// its pass.
+static const double LEAST_MS = 10;
+
 typedef struct Picture {
     Ranks* ranks;
     vplContext* context;
@@ -85,7 +89,11 @@ static vplResult divide(Picture* p)
     int bands = before.count > 0 ? before.bands : p->ranks->options.bands;
     TRY(vplRenderer_Divide(p->renderer, 1, &p->grid));
     if (bands == 0 && p->ranks->count > 1) {
-        bands = (PIECES_PER_RANK * p->ranks->count + p->grid.passes - 1) / p->grid.passes;
+        const vplPlan* plan = vplRenderer_GetPlan(p->renderer);
+        const double once = plan->firstMs - plan->passMs, pieces = (plan->predictedMs - once) / LEAST_MS;
+        const int most = PIECES_PER_RANK * p->ranks->count, least = p->ranks->count;
+        const int wanted = pieces < least ? least : pieces < most ? (int)pieces : most;
+        bands = (wanted + p->grid.passes - 1) / p->grid.passes;
     }
     return bands > 1 ? vplRenderer_Divide(p->renderer, bands, &p->grid) : VPL_SUCCESS;
 }
