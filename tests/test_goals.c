@@ -218,23 +218,33 @@ static void finishSaved(const vplScene* scene, const vplRenderOptions* o, vplRen
 // What was learnt of the error is saved, too: the render ends where it would have ended.
 TEST(ARenderThatWasSavedEndsAtTheSamePass, 2)
 {
-    static const vplMethod METHODS[] = {VPL_METHOD_AUTO, VPL_METHOD_PATH};
-    vplScene* scene = loadScene(context, "room.json");
-    for (int i = 0; i < 2; i++) {
+    static const struct {
+        const char* scene;
+        vplMethod method;
+        double error;
+    } CASES[] = {
+        {"tests/data/room.json", VPL_METHOD_AUTO, 0.05}, // after five passes another plan follows the first
+        {"tests/data/room.json", VPL_METHOD_PATH, 0.15},
+        {"examples/scenes/room-area.json", VPL_METHOD_AUTO, 0.1}, // paths through pixels at edges end it
+        {"examples/scenes/room-area.json", VPL_METHOD_AUTO,
+         0.12}, // they leave too much, and another plan follows
+    };
+    for (int i = 0; i < 4; i++) {
+        vplScene* scene = openScene(context, CASES[i].scene);
         vplRenderOptions o = smallOptions();
         vplRenderStats whole, stats;
         bool ended = false;
-        o.method = METHODS[i];
-        o.stop.maxError = i == 0 ? 0.05 : 0.15; // after five passes another plan follows the first
+        o.method = CASES[i].method;
+        o.stop.maxError = CASES[i].error;
         vplImage_Destroy(renderScene(scene, &o, &whole));
         for (int steps = 1; !ended; steps += 2) {
             saveAfter(scene, &o, steps, &ended);
             finishSaved(scene, &o, &stats);
             assert_true(stats.passes == whole.passes && stats.imageHash == whole.imageHash);
         }
+        vplScene_Destroy(scene);
     }
     remove(SAVED);
-    vplScene_Destroy(scene);
 }
 
 // Cancels at one call.
