@@ -1,143 +1,280 @@
 // SPDX-License-Identifier: MIT
-// Tests of --edge-pixels: which pixels are path-traced, what that does to the error, and that the bits stay those of any machine.
+// Tests of coverage antialiasing: pictures are near those of whole renders per sample, only pixels at edges
+// and at rims of shadows change, and bits are the same everywhere.
 #include "scenes.h"
 
-#include "render/planner/contrast.h"
+#include "math/vec.h"
 
-enum { WIDTH = 96, HEIGHT = 54, PIXELS = 400 };
+#include <stdlib.h>
 
-static vplRenderOptions edgeOptions(int pixels, const char* words)
+enum { WIDTH = 160, HEIGHT = 90 };
+
+// ---- pictures
+
+// Renders with options from a list of names and values that ends in NULL.
+static vplImage* renderWith(const vplScene* scene, const char* const* words, const char* name,
+                            const char* value)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = WIDTH;
     o.output.height = HEIGHT;
-    o.method = VPL_METHOD_KELLER;
-    o.stop.passes = 2;
-    o.path.edgePixels = pixels;
-    assert_int_equal(vplRenderOptions_SetAll(&o, words), VPL_SUCCESS);
-    return o;
-}
-
-static bool isSamePixel(const vplImage* a, const vplImage* b, size_t pixel)
-{
-    return memcmp(a->pixels + 3 * pixel, b->pixels + 3 * pixel, 3 * sizeof *a->pixels) == 0;
-}
-
-// The mean of squared differences from two path-traced pictures, whose noise cancels: of pixels that differ between two pictures.
-static double squareWhere(const vplImage* image, vplImage* const halves[2], const vplImage* differsFrom,
-                          const vplImage* to)
-{
-    double square = 0;
-    int count = 0;
-    for (size_t p = 0; p < WIDTH * HEIGHT; p++) {
-        if (isSamePixel(differsFrom, to, p)) {
-            continue;
-        }
-        for (size_t k = 3 * p; k < 3 * p + 3; k++, count++) {
-            const double x = (double)image->pixels[k];
-            square += (x - (double)halves[0]->pixels[k]) * (x - (double)halves[1]->pixels[k]);
-        }
+    for (; *words != NULL; words += 2) {
+        assert_int_equal(vplRenderOptions_Set(&o, words[0], words[1]), VPL_SUCCESS);
     }
-    return square / count;
+    assert_int_equal(vplRenderOptions_Set(&o, name, value), VPL_SUCCESS);
+    return renderScene(scene, &o, NULL);
 }
 
-static void renderTruth(const vplScene* scene, vplImage* halves[2])
+// Leaves out the bright spot above the lamp, which changes within a pixel without an edge.
+static double rmseOf(const vplImage* a, const vplImage* b)
 {
-    vplRenderOptions truth = edgeOptions(0, "--method path --spp 256");
+    enum { TOP = 24 };
+    vplComparison c;
+    vplImage* below[2];
+    assert_int_equal(vplImage_Crop(a, 0, TOP, WIDTH, HEIGHT - TOP, &below[0]), VPL_SUCCESS);
+    assert_int_equal(vplImage_Crop(b, 0, TOP, WIDTH, HEIGHT - TOP, &below[1]), VPL_SUCCESS);
+    assert_int_equal(vplImage_Compare(below[0], below[1], &c), VPL_SUCCESS);
+    vplImage_Destroy(below[0]);
+    vplImage_Destroy(below[1]);
+    return c.relativeRmse;
+}
+
+// Boxes and quads that emit, or reflect the light of an emitter in the camera, whose shadows the camera does
+// not see.
+static vplScene* cloudScene(vplContext* context, uint64_t seed, bool emits)
+{
+    vplScene* scene = sceneOf(context, 0);
+    aim(scene, vplVec(0, 0, 6), vplVec(0, 0, 0));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(0, 0, 6), vplVec(0, 0, -1), 30);
+    for (int i = 0; i < 40; i++) {
+        const uint64_t at = 16 * (uint64_t)i;
+        const float level = 0.1f * (float)(1 + i % 7), rho = emits ? 0 : level;
+        const int material = addMaterial(scene, (vplRgb){rho, rho, rho}, level - rho);
+        const double thin = i % 3 == 0 ? 0.01 : 1;
+        addThing(scene, i % 2 ? VPL_OBJECT_BOX : VPL_OBJECT_QUAD, material,
+                 vplVec((float)(8 * uniformAt(seed, at) - 4), (float)(5 * uniformAt(seed, at + 1) - 2.5),
+                        (float)(4 * uniformAt(seed, at + 2) - 2)),
+                 6 * uniformAt(seed, at + 3), 6 * uniformAt(seed, at + 4),
+                 vplVec((float)(0.2 + uniformAt(seed, at + 5)),
+                        (float)(thin * (0.2 + uniformAt(seed, at + 6))),
+                        (float)(0.2 + uniformAt(seed, at + 7))));
+    }
+    return scene;
+}
+
+static const char* const BARE[] = {"method",     "direct", "light-shadows", "ray", "lighting",
+                                   "documented", NULL};
+
+// Both see the same points of pixels; only corners are snapped to 1/256 pixel at other places.
+TEST(CoverageIsThatOfWholePictures, 2)
+{
+    for (uint64_t seed = 0; seed < 3; seed++) {
+        vplScene* scene = cloudScene(context, seed, false);
+        vplImage* smooth = renderWith(scene, BARE, "antialias", "8");
+        vplImage* whole = renderWith(scene, BARE, "supersample", "9"); // 8 samples and the centre
+        vplImage* hard = renderWith(scene, BARE, "antialias", "1");
+        int apart = 0, edges = 0;
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+            const double wanted = (double)whole->pixels[i], least = 0.03; // light varies within a pixel
+            apart += fabs((double)smooth->pixels[i] - wanted) > least;
+            edges += fabs((double)hard->pixels[i] - wanted) > least;
+        }
+        print_message("# %d values at edges, %d apart\n", edges, apart);
+        assert_true(edges > 1000);
+        assert_true(apart < edges / 100);
+        vplImage_Destroy(smooth);
+        vplImage_Destroy(whole);
+        vplImage_Destroy(hard);
+        vplScene_Destroy(scene);
+    }
+}
+
+// The mean emission of pixels at edges is found by more rays than there are samples.
+TEST(EdgesOfLampsAreFinerThanSamples, 2)
+{
+    for (uint64_t seed = 0; seed < 3; seed++) {
+        vplScene* scene = cloudScene(context, seed, true);
+        vplImage* truth = renderWith(scene, BARE, "supersample", "1024");
+        vplImage* smooth = renderWith(scene, BARE, "antialias", "8");
+        vplImage* whole = renderWith(scene, BARE, "supersample", "9");
+        const double error = rmseOf(smooth, truth), samples = rmseOf(whole, truth);
+        print_message("# relative rmse %.4f, of 9 pictures %.4f\n", error, samples);
+        assert_true(error < 0.8 * samples);
+        vplImage_Destroy(truth);
+        vplImage_Destroy(smooth);
+        vplImage_Destroy(whole);
+        vplScene_Destroy(scene);
+    }
+}
+
+// ---- all methods
+
+static const char* const WAYS[][9] = {
+    {"method", "direct"},
+    {"method", "instant-radiosity", "particles", "40"},
+    {"method", "instant-radiosity", "particles", "64", "pipeline", "interleaved"},
+    {"method", "keller", "particles", "24", "compensation", "none"},
+    {"method", "instant-radiosity", "particles", "64", "pipeline", "lightcuts"},
+    {"method", "ssvp", "first-bounce", "64", "second-bounce", "64"},
+    {"method", "radiosity", "patches", "200"},
+};
+enum { WAY_COUNT = sizeof WAYS / sizeof *WAYS };
+
+// The error of pictures at edges falls by more than the noise of lights lets remain.
+TEST(EdgesComeNearTheTruth, 2, SLOW)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    for (int way = 0; way < WAY_COUNT; way++) {
+        vplImage* truth = renderWith(scene, WAYS[way], "supersample", "64");
+        vplImage* hard = renderWith(scene, WAYS[way], "antialias", "1");
+        vplImage* smooth = renderWith(scene, WAYS[way], "antialias", "8");
+        const double before = rmseOf(hard, truth), after = rmseOf(smooth, truth);
+        print_message("# way %d: relative rmse %.4f, with 8 samples %.4f\n", way, before, after);
+        assert_true(after < before / 2.5);
+        vplImage_Destroy(truth);
+        vplImage_Destroy(hard);
+        vplImage_Destroy(smooth);
+    }
+    vplScene_Destroy(scene);
+}
+
+// A picture of one plane has no edges: not a bit changes.
+TEST(WithoutEdgesNoBitChanges, 2)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    aim(scene, vplVec(0, 1, 0), vplVec(0.01f, 0, 0));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.3f, 2, 0.2f), vplVec(0, -1, 0), 3);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -VPL_PI / 2, 0, vplVec(100, 100, 1));
+    for (int way = 0; way < WAY_COUNT - 1; way++) { // the patches of the last one are triangles of their own
+        vplImage* hard = renderWith(scene, WAYS[way], "antialias", "1");
+        vplImage* smooth = renderWith(scene, WAYS[way], "antialias", "16");
+        assert_true(hard->pixels[0] > 0);
+        assert_true(vplImage_Hash(hard) == vplImage_Hash(smooth));
+        vplImage_Destroy(hard);
+        vplImage_Destroy(smooth);
+    }
+    vplScene_Destroy(scene);
+}
+
+// Stripes of two reflectances finer than a pixel, more than tiles keep for the filter of interleaved shading.
+TEST(MoreEdgesThanATileKeepsAreLitAsWell, 2)
+{
+    vplScene* scene = sceneOf(context, 0.2f);
+    const int bright = addMaterial(scene, (vplRgb){0.9f, 0.5f, 0.1f}, 0);
+    aim(scene, vplVec(0, 2, 0), vplVec(0.01f, 0, 0));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.3f, 1.5f, 0.2f), vplVec(0, -1, 0), 3);
+    for (int i = 0; i < 240; i++) {
+        addThing(scene, VPL_OBJECT_QUAD, i % 2 ? 0 : bright, vplVec(0.02f * (float)(i - 120), 0, 0),
+                 -VPL_PI / 2, 0, vplVec(0.02f, 4, 1));
+    }
+    const char* const deferred[] = {"particles", "64", NULL};
+    const char* const shared[] = {"particles", "64", "pipeline", "interleaved", NULL};
+    vplImage* wanted = renderWith(scene, deferred, "antialias", "8");
+    vplImage* found = renderWith(scene, shared, "antialias", "8");
+    assert_true(rmseOf(found, wanted) < 0.02);
+    vplImage_Destroy(wanted);
+    vplImage_Destroy(found);
+    vplScene_Destroy(scene);
+}
+
+// ---- rims of shadows
+
+// A plane under an emitter, and things above the picture that throw shadows on it: a large one at an angle,
+// and bars whose shadows are thinner than a pixel, along an axis and at an angle.
+static vplScene* shadowScene(vplContext* context, vplEmitterType type)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    aim(scene, vplVec(0, 3, 0), vplVec(0.01f, 0, 0));
+    addEmitter(scene, type, vplVec(0, 8, 0), vplVec(0, -1, 0), type == VPL_EMITTER_DIRECTIONAL ? 2 : 100);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -VPL_PI / 2, 0, vplVec(100, 100, 1));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(-0.6f, 6, 0.2f), 0, 0.7, vplVec(0.4f, 0.02f, 0.3f));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.4f, 6, 0.331f), 0, 0, vplVec(0.9f, 0.02f, 0.004f));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.5f, 6, -0.4f), 0, 0.3, vplVec(0.7f, 0.02f, 0.003f));
+    return scene;
+}
+
+static const char* const HARD[] = {"method", "direct", "light-shadows", "ray", NULL};
+
+TEST(RimsOfShadowsComeNearTheTruth, 2)
+{
+    const vplEmitterType types[] = {VPL_EMITTER_POINT, VPL_EMITTER_DIRECTIONAL};
     for (int i = 0; i < 2; i++) {
-        truth.seed = 7 + (uint64_t)i;
-        halves[i] = renderScene(scene, &truth, NULL);
+        vplScene* scene = shadowScene(context, types[i]);
+        vplImage* truth = renderWith(scene, HARD, "supersample", "256");
+        vplImage* hard = renderWith(scene, HARD, "antialias", "1");
+        vplImage* smooth = renderWith(scene, HARD, "antialias", "8");
+        vplImage* whole = renderWith(scene, HARD, "supersample", "9");
+        const double before = rmseOf(hard, truth), after = rmseOf(smooth, truth),
+                     least = rmseOf(whole, truth);
+        print_message("# relative rmse %.4f, smooth %.4f, 9 pictures %.4f\n", before, after, least);
+        assert_true(least < before / 3);
+        assert_true(after < 1.3 * least);
+        vplImage_Destroy(truth);
+        vplImage_Destroy(hard);
+        vplImage_Destroy(smooth);
+        vplImage_Destroy(whole);
+        vplScene_Destroy(scene);
     }
 }
 
-TEST(PixelsThatDifferMostFromTheirNeighboursAreTraced, 1)
+// Both see the same points of pixels, and the plane is one surface.
+TEST(SmoothRimsAreThoseOfWholePictures, 2)
 {
-    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
-    const vplRenderOptions without = edgeOptions(0, ""), with = edgeOptions(PIXELS, "--edge-paths 2");
-    vplImage *plain = renderScene(scene, &without, NULL), *traced = renderScene(scene, &with, NULL);
-    double least = INFINITY;
-    int changed = 0, asSharp = 0;
+    vplScene* scene = shadowScene(context, VPL_EMITTER_POINT);
+    vplImage* smooth = renderWith(scene, HARD, "antialias", "8");
+    vplImage* whole = renderWith(scene, HARD, "supersample", "9");
+    int apart = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        if (!isSamePixel(plain, traced, (size_t)i)) {
-            least = fmin(least, vplContrastOfPixel(plain, i % WIDTH, i / WIDTH));
-            changed++;
-        }
+        apart += fabs((double)smooth->pixels[3 * i] / (double)whole->pixels[3 * i] - 1) > 1e-3;
     }
-    for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        asSharp += vplContrastOfPixel(plain, i % WIDTH, i / WIDTH) >= least;
-    }
-    assert_true(changed <= PIXELS && changed > 3 * PIXELS / 4);
-    assert_true(asSharp <= PIXELS); // none with more contrast was left out
-    vplImage_Destroy(plain);
-    vplImage_Destroy(traced);
+    print_message("# %d pixels apart\n", apart);
+    assert_int_equal(apart, 0);
+    vplImage_Destroy(smooth);
+    vplImage_Destroy(whole);
     vplScene_Destroy(scene);
 }
 
-TEST(TracedEdgesHaveTheErrorOfTheirPaths, 2)
+static uint64_t hashAll(vplContext* context)
 {
-    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
-    vplImage *halves[2], *images[3];
-    renderTruth(scene, halves);
-    for (int i = 0; i < 3; i++) {
-        const vplRenderOptions o =
-            edgeOptions(i > 0 ? PIXELS : 0, i > 1 ? "--edge-paths 256" : "--edge-paths 16");
-        images[i] = renderScene(scene, &o, NULL);
-    }
-    const double lights = squareWhere(images[0], halves, images[0], images[2]),
-                 some = squareWhere(images[1], halves, images[0], images[2]),
-                 many = squareWhere(images[2], halves, images[0], images[2]);
-    if (!(many < 0.25 * lights && many < 0.25 * some)) {
-        fail_msg("mean square of traced pixels: %g, by 16 paths %g, by 256 %g", lights, some, many);
-    }
-    for (int i = 0; i < 5; i++) {
-        vplImage_Destroy(i < 2 ? halves[i] : images[i - 2]);
+    vplScene* scene = shadowScene(context, VPL_EMITTER_DIRECTIONAL);
+    vplImage* rims = renderWith(scene, HARD, "antialias", "8");
+    uint64_t hash = vplImage_Hash(rims);
+    vplImage_Destroy(rims);
+    vplScene_Destroy(scene);
+    scene = openScene(context, "examples/scenes/room.json");
+    for (int way = 1; way < WAY_COUNT; way++) {
+        vplImage* image = renderWith(scene, WAYS[way], "antialias", "5");
+        hash = hash * 31 + vplImage_Hash(image);
+        vplImage_Destroy(image);
     }
     vplScene_Destroy(scene);
+    closeTestContext(context);
+    return hash;
 }
 
-// A room without contrast has no edges.
-TEST(AnEvenPictureHasNoEdges, 1)
+TEST_ALONE(SmoothEdgesAreTheSameEverywhere, SLOW)
 {
-    vplScene* scene = closedCubeScene(context, 0, 1);
-    aim(scene, (vplVec3){0, 0, 0}, (vplVec3){0, 0, 1});
-    const vplRenderOptions without = edgeOptions(0, ""), with = edgeOptions(PIXELS, "");
-    vplRenderStats a, b;
-    vplImage_Destroy(renderScene(scene, &without, &a));
-    vplImage_Destroy(renderScene(scene, &with, &b));
-    assert_true(a.imageHash == b.imageHash);
-    vplScene_Destroy(scene);
+    assertSameEverywhere(hashAll);
 }
 
-// The planner traces edges where they have most of the error; what it says of the error holds.
-TEST(TheErrorHoldsWhereThePlannerTracesEdges, 2)
+// ---- the plan
+
+TEST(StagesAndPassesAreNotSmoothed, 1)
 {
-    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
-    const vplRenderOptions o = edgeOptions(0, "--method auto --passes 0 --max-error 0.1");
-    vplRenderer* r;
-    vplImage *image, *halves[2];
-    vplRenderStats stats;
-    uint64_t traced = 0;
-    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-    for (bool done = false; !done;) {
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    const char* const without[][2] = {
+        {"show", "normals"}, {"pipeline", "multipass"}, {"pipeline", "batched"}, {"supersample", "2"}};
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    for (int i = 0; i < 4; i++) {
+        vplRenderOptions o = plainOptions();
+        vplPlan* plan;
+        assert_int_equal(vplRenderOptions_Set(&o, "antialias", "8"), VPL_SUCCESS);
+        assert_int_equal(vplRenderOptions_Set(&o, without[i][0], without[i][1]), VPL_SUCCESS);
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->options.output.antialias, 1);
+        vplPlan_Destroy(plan);
     }
-    assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
-    for (int i = 0; i < stats.stageCount; i++) {
-        traced += strcmp(stats.stages[i].name, "edges") == 0;
-    }
-    assert_true(traced == 1 && stats.relativeErrorEstimate <= 0.1);
-    renderTruth(scene, halves);
-    double square = 0, sum = 0;
-    for (size_t k = 0; k < 3 * WIDTH * HEIGHT; k++) {
-        const double x = (double)image->pixels[k], a = (double)halves[0]->pixels[k],
-                     b = (double)halves[1]->pixels[k];
-        square += (x - a) * (x - b) / (3 * WIDTH * HEIGHT);
-        sum += 0.5 * (a + b) / (3 * WIDTH * HEIGHT);
-    }
-    assert_true(sqrt(fmax(0, square)) <= 0.1 * sum);
-    vplImage_Destroy(image);
-    vplImage_Destroy(halves[0]);
-    vplImage_Destroy(halves[1]);
-    vplRenderer_Destroy(r);
+    vplRenderOptions o = plainOptions();
+    o.output.antialias = VPL_MAX_SAMPLES_PER_PIXEL + 1;
+    assert_int_equal(vplRender(scene, &o, &(vplImage*){NULL}, NULL), VPL_INVALID_ARGUMENT);
     vplScene_Destroy(scene);
 }

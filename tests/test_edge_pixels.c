@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Tests of --edge-pixels: which pixels are path-traced, what that does to the error, and that the bits stay those of any machine.
+#include "scenes.h"
+
+#include "render/planner/contrast.h"
+
+enum { WIDTH = 96, HEIGHT = 54, PIXELS = 400 };
+
+static vplRenderOptions edgeOptions(int pixels, const char* words)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.output.width = WIDTH;
+    o.output.height = HEIGHT;
+    o.method = VPL_METHOD_KELLER;
+    o.stop.passes = 2;
+    o.path.edgePixels = pixels;
+    assert_int_equal(vplRenderOptions_SetAll(&o, words), VPL_SUCCESS);
+    return o;
+}
+
+static bool isSamePixel(const vplImage* a, const vplImage* b, size_t pixel)
+{
+    return memcmp(a->pixels + 3 * pixel, b->pixels + 3 * pixel, 3 * sizeof *a->pixels) == 0;
+}
+
+// The mean of squared differences from two path-traced pictures, whose noise cancels: of pixels that differ between two pictures.
+static double squareWhere(const vplImage* image, vplImage* const halves[2], const vplImage* differsFrom,
+                          const vplImage* to)
+{
+    double square = 0;
+    int count = 0;
+    for (size_t p = 0; p < WIDTH * HEIGHT; p++) {
+        if (isSamePixel(differsFrom, to, p)) {
+            continue;
+        }
+        for (size_t k = 3 * p; k < 3 * p + 3; k++, count++) {
+            const double x = (double)image->pixels[k];
+            square += (x - (double)halves[0]->pixels[k]) * (x - (double)halves[1]->pixels[k]);
+        }
+    }
+    return square / count;
+}
+
+static void renderTruth(const vplScene* scene, vplImage* halves[2])
+{
+    vplRenderOptions truth = edgeOptions(0, "--method path --spp 256");
+    for (int i = 0; i < 2; i++) {
+        truth.seed = 7 + (uint64_t)i;
+        halves[i] = renderScene(scene, &truth, NULL);
+    }
+}
+
+TEST(PixelsThatDifferMostFromTheirNeighboursAreTraced, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    const vplRenderOptions without = edgeOptions(0, ""), with = edgeOptions(PIXELS, "--edge-paths 2");
+    vplImage *plain = renderScene(scene, &without, NULL), *traced = renderScene(scene, &with, NULL);
+    double least = INFINITY;
+    int changed = 0, asSharp = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        if (!isSamePixel(plain, traced, (size_t)i)) {
+            least = fmin(least, vplContrastOfPixel(plain, i % WIDTH, i / WIDTH));
+            changed++;
+        }
+    }
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        asSharp += vplContrastOfPixel(plain, i % WIDTH, i / WIDTH) >= least;
+    }
+    assert_true(changed <= PIXELS && changed > 3 * PIXELS / 4);
+    assert_true(asSharp <= PIXELS); // none with more contrast was left out
+    vplImage_Destroy(plain);
+    vplImage_Destroy(traced);
+    vplScene_Destroy(scene);
+}
+
+TEST(TracedEdgesHaveTheErrorOfTheirPaths, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    vplImage *halves[2], *images[3];
+    renderTruth(scene, halves);
+    for (int i = 0; i < 3; i++) {
+        const vplRenderOptions o =
+            edgeOptions(i > 0 ? PIXELS : 0, i > 1 ? "--edge-paths 256" : "--edge-paths 16");
+        images[i] = renderScene(scene, &o, NULL);
+    }
+    const double lights = squareWhere(images[0], halves, images[0], images[2]),
+                 some = squareWhere(images[1], halves, images[0], images[2]),
+                 many = squareWhere(images[2], halves, images[0], images[2]);
+    if (!(many < 0.25 * lights && many < 0.25 * some)) {
+        fail_msg("mean square of traced pixels: %g, by 16 paths %g, by 256 %g", lights, some, many);
+    }
+    for (int i = 0; i < 5; i++) {
+        vplImage_Destroy(i < 2 ? halves[i] : images[i - 2]);
+    }
+    vplScene_Destroy(scene);
+}
+
+// A room without contrast has no edges.
+TEST(AnEvenPictureHasNoEdges, 1)
+{
+    vplScene* scene = closedCubeScene(context, 0, 1);
+    aim(scene, (vplVec3){0, 0, 0}, (vplVec3){0, 0, 1});
+    const vplRenderOptions without = edgeOptions(0, ""), with = edgeOptions(PIXELS, "");
+    vplRenderStats a, b;
+    vplImage_Destroy(renderScene(scene, &without, &a));
+    vplImage_Destroy(renderScene(scene, &with, &b));
+    assert_true(a.imageHash == b.imageHash);
+    vplScene_Destroy(scene);
+}
+
+// The planner traces edges where they have most of the error; what it says of the error holds.
+TEST(TheErrorHoldsWhereThePlannerTracesEdges, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    const vplRenderOptions o = edgeOptions(0, "--method auto --passes 0 --max-error 0.1");
+    vplRenderer* r;
+    vplImage *image, *halves[2];
+    vplRenderStats stats;
+    uint64_t traced = 0;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    for (bool done = false; !done;) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
+    for (int i = 0; i < stats.stageCount; i++) {
+        traced += strcmp(stats.stages[i].name, "edges") == 0;
+    }
+    assert_true(traced == 1 && stats.relativeErrorEstimate <= 0.1);
+    renderTruth(scene, halves);
+    double square = 0, sum = 0;
+    for (size_t k = 0; k < 3 * WIDTH * HEIGHT; k++) {
+        const double x = (double)image->pixels[k], a = (double)halves[0]->pixels[k],
+                     b = (double)halves[1]->pixels[k];
+        square += (x - a) * (x - b) / (3 * WIDTH * HEIGHT);
+        sum += 0.5 * (a + b) / (3 * WIDTH * HEIGHT);
+    }
+    assert_true(sqrt(fmax(0, square)) <= 0.1 * sum);
+    vplImage_Destroy(image);
+    vplImage_Destroy(halves[0]);
+    vplImage_Destroy(halves[1]);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
