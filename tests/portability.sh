@@ -174,7 +174,7 @@ musl() {
 # Suites of files, hashes and arithmetic: what a machine's byte order and word size can change. Whole renders are left to the
 # golden pictures and to what is done with the program.
 FILES="image exr ply ply_read gltf gltf_scene files math obj obj_parts textures layers scene hits pieces checkpoint plan_file
-    -Threads -OneRender -FinalGather -ALoadedRender -GoesOnToMore -IsReplayedToo"
+    -Threads -Everywhere -OneRender -FinalGather -ALoadedRender -GoesOnToMore -IsReplayedToo -AddUp -ThatEmit"
 # All quick tests but those of failing allocations, which check_all.sh runs, and of one picture by many numbers of threads.
 WHOLE="-memory -Threads -Everywhere"
 
