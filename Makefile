@@ -122,7 +122,7 @@ test-programs: programs $(NULLS) $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPL
 check-all: deps
 	@tests/check_all.sh
 
-## make portability the tests on musl, i386 and s390x, by cross compilers and emulators: installs them
+## make portability the tests on musl, i386, s390x and Windows, by cross compilers, qemu and wine: installs them
 portability: deps
 	@tests/portability.sh
 

@@ -1,11 +1,13 @@
 #!/bin/sh
 # Builds the library, program, unit tests and golden pictures for other machines and runs them there or in an emulator: all
-# golden pictures must have the recorded bits. tests/portability.sh [TARGET...]: default musl i386 s390x mingw. Installs what
-# is missing, as root; a target whose compiler or libraries cannot be had is skipped with a sentence. tests/portability.md
-# has the results, and the reasons for what is left out. VPL_GOLDEN_ONLY=1 leaves out the unit tests.
+# golden pictures must have the recorded bits, and the program must write the bytes that this machine's does.
+# tests/portability.sh [TARGET...]: default musl i386 s390x mingw. Installs what is missing, as root; a target whose compiler
+# or libraries cannot be had is skipped with a sentence. tests/portability.md has the results, and the reasons for what is
+# left out. VPL_FILES_ONLY=1 takes only the unit tests of files, hashes and arithmetic. Times are processor time.
 here=build/portability
 mkdir -p "$here"
 here=$(cd "$here" && pwd)
+native=build/vpl
 passed=0
 failed=0
 jobs=${JOBS:-$(nproc)}
@@ -21,8 +23,9 @@ install() {
     for package in "$@"; do
         dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing="$missing $package"
     done
-    [ -z "$missing" ] || DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing \
-        >"$here/install.log" 2>&1
+    [ -z "$missing" ] && return
+    set -- env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+    "$@" >"$here/install.log" 2>&1 || { apt-get update && "$@"; } >>"$here/install.log" 2>&1
 }
 
 # Adds a Debian architecture whose libraries are wanted.
@@ -33,7 +36,8 @@ architecture() {
 # OpenEXR's headers cannot be installed for two architectures: its packages are unpacked to a folder.
 unpack_exr() {
     [ -e "$here/$1-root/usr/include/OpenEXR/openexr.h" ] && return
-    mkdir -p "$here/$1-debs" && for package in libopenexr-dev libopenexr-3-1-30 zlib1g; do
+    library=$(apt-cache depends "libopenexr-dev:$1" | sed -n 's/.*Depends: \(libopenexr-[0-9][^:]*\).*/\1/p' | head -n 1)
+    mkdir -p "$here/$1-debs" && for package in libopenexr-dev $library zlib1g; do
         (cd "$here/$1-debs" && apt-get download "$package:$1" >/dev/null 2>&1) || return 1
     done
     for deb in "$here/$1-debs"/*.deb; do dpkg -x "$deb" "$here/$1-root" || return 1; done
@@ -67,6 +71,22 @@ from_sources() {
     ) >"$here/sources.log" 2>&1
 }
 
+# Sets `spent` to the seconds of processor time since the call before, of programs that have ended.
+before=0
+measure() {
+    times >"$here/times"
+    now=$(sed -n '2{s/m/ /g;s/s//g;p}' "$here/times" | awk '{printf "%.0f", 60 * ($1 + $3) + $2 + $4}')
+    spent=$((now - before)) before=$now
+}
+
+# Adds up what passed and failed, and prints it: tell NAME PASSED FAILED.
+tell() {
+    measure
+    passed=$((passed + $2))
+    failed=$((failed + $3))
+    echo "$1: $2 passed, $3 failed ($spent s)"
+}
+
 # count NAME COMMAND...: runs something that ends with "N passed, N failed".
 count() {
     name=$1
@@ -77,29 +97,71 @@ count() {
     good=$(echo "$line" | sed -n 's/ passed.*//p')
     bad=$(echo "$line" | sed -n 's/.*, \([0-9]*\) failed/\1/p')
     [ -n "$line" ] && { [ "$code" -eq 0 ] || [ "$bad" -ne 0 ]; } || bad=$((${bad:-0} + 1)) # it died
-    passed=$((passed + ${good:-0}))
-    failed=$((failed + bad))
-    echo "$name: ${good:-0} passed, $bad failed"
+    tell "$name" "${good:-0}" "$bad"
     [ "$bad" -eq 0 ] || grep -aE 'FAILED|ERROR|LINE|^not ok|rror' "$here/$target.tests" | head -n 30
+}
+
+# same NAME A B: two files must have the same bytes.
+same() {
+    if cmp -s "$2" "$3"; then good=$((good + 1)); else bad=$((bad + 1)) && echo "not ok $1"; fi
+}
+
+# The program's files against those of this machine's program, and files of one that the other reads: program RUNNER... VPL.
+program() {
+    [ -x "$native" ] || make -j"$jobs" --no-print-directory "$native" >"$here/native.log" 2>&1
+    other="$*" good=0 bad=0 out=$here/$target-files
+    rm -rf "$out" && mkdir -p "$out"
+    room=examples/scenes/room.json textured=examples/scenes/textured-room.json
+    path="examples/scenes/room-area.json --method path --size 48x100 --quiet"
+    for kind in native other; do
+        eval "vpl=\$$kind"
+        $vpl render - -o - --size 40x30 --quiet <$room >"$out/$kind.png" 2>"$out/$kind.log"
+        $vpl render $textured -o "$out/$kind.pfm" --size 40x30 --quiet 2>>"$out/$kind.log"
+        $vpl lights $textured --particles 50 >"$out/$kind.csv" 2>>"$out/$kind.log"
+        $vpl help render >"$out/$kind.help" 2>>"$out/$kind.log"
+        $vpl info missing.json >"$out/$kind.words" 2>&1
+        echo "code $?" | cat "$out/$kind.words" - | tr -d '\r' >"$out/$kind.refusal" # Windows ends lines so
+        $vpl render $path --spp 8 -o "$out/$kind-whole.pfm" 2>>"$out/$kind.log"
+        $vpl render $path --spp 4 -o "$out/$kind-half.pfm" --checkpoint "$out/$kind.state" 2>>"$out/$kind.log"
+    done
+    same "a PNG at standard output of a scene at standard input" "$out/native.png" "$out/other.png"
+    same "a PFM of a scene with pictures" "$out/native.pfm" "$out/other.pfm"
+    same "a table of virtual lights" "$out/native.csv" "$out/other.csv"
+    same "the help" "$out/native.help" "$out/other.help"
+    same "a refusal and its code" "$out/native.refusal" "$out/other.refusal"
+    same "a picture of paths" "$out/native-whole.pfm" "$out/other-whole.pfm"
+    same "the state of a render" "$out/native.state" "$out/other.state"
+    $native render $path --spp 8 --resume "$out/other.state" -o "$out/here.pfm"
+    $other render $path --spp 8 --resume "$out/native.state" -o "$out/there.pfm"
+    same "a render that goes on here" "$out/native-whole.pfm" "$out/here.pfm"
+    same "a render that goes on there" "$out/native-whole.pfm" "$out/there.pfm"
+    $native render $path --spp 8 --tile 1/2 -o "$out/tile1" && $other render $path --spp 8 --tile 2/2 -o "$out/tile2"
+    $native merge "$out/tile1" "$out/tile2" -o "$out/here.pfm" && $other merge "$out/tile1" "$out/tile2" -o "$out/there.pfm"
+    same "parts that are merged here" "$out/native-whole.pfm" "$out/here.pfm"
+    same "parts that are merged there" "$out/native-whole.pfm" "$out/there.pfm"
+    tell "$target program" "$good" "$bad"
+    [ "$bad" -eq 0 ] || cat "$out/other.log"
 }
 
 # run NAME RUNNER SUFFIX "TESTS" MAKE-VARIABLES...: builds a target and runs what was built. RUNNER "none" only builds.
 run() {
     target=$1 runner=$2 suffix=$3 tests=$4 build=build/portability/$1
     shift 4
-    [ -n "$VPL_GOLDEN_ONLY" ] || set -- "$@" "$build/vpl-tests"
+    [ -z "$VPL_FILES_ONLY" ] || tests=$FILES
+    measure
     if ! make -j"$jobs" --no-print-directory BUILD="$build" "$@" "$build/libvpl.a" "$build/vpl" "$build/vpl-golden" \
-        >"$here/$target.log" 2>&1; then
+        "$build/vpl-tests" >"$here/$target.log" 2>&1; then
         echo "$target: not built, see build/portability/$target.log"
         grep -m 5 -E 'rror|undefined' "$here/$target.log"
         failed=$((failed + 1))
         return
     fi
-    warnings=$(grep -c 'warning:' "$here/$target.log")
-    echo "$target: built, $warnings warnings"
+    measure
+    echo "$target: built, $(grep -c 'warning:' "$here/$target.log") warnings ($spent s)"
     [ "$runner" != none ] || return
+    program $runner "$build/vpl$suffix"
     count "$target golden pictures" $runner "$build/vpl-golden$suffix" check golden "$build/golden"
-    [ -n "$VPL_GOLDEN_ONLY" ] || count "$target unit tests" $runner "$build/vpl-tests$suffix" --quick $tests
+    count "$target unit tests" $runner "$build/vpl-tests$suffix" --quick $tests
 }
 
 # musl has no OpenEXR and its gcc no OpenMP.
@@ -109,8 +171,10 @@ musl() {
         LDLIBS="-L$here/musl-root/lib -ljansson -lm"
 }
 
-# Suites of files, hashes and arithmetic: what a machine's byte order and word size can change.
-FILES="image exr ply ply_read gltf gltf_scene files math obj obj_parts textures layers scene hits TheHashOfTheCallersView -Threads"
+# Suites of files, hashes and arithmetic: what a machine's byte order and word size can change. Whole renders are left to the
+# golden pictures and to what is done with the program.
+FILES="image exr ply ply_read gltf gltf_scene files math obj obj_parts textures layers scene hits pieces checkpoint plan_file
+    -Threads -Everywhere -OneRender -FinalGather -ALoadedRender -GoesOnToMore -IsReplayedToo -AddUp -ThatEmit"
 # All quick tests but those of failing allocations, which check_all.sh runs, and of one picture by many numbers of threads.
 WHOLE="-memory -Threads -Everywhere"
 
@@ -133,7 +197,8 @@ s390x() {
     { install gcc-s390x-linux-gnu libc6-dev-s390x-cross qemu-user-static libjansson-dev:s390x libcmocka-dev:s390x &&
         unpack_exr s390x; } ||
         { skip s390x "it needs gcc-s390x-linux-gnu, qemu-user-static and Debian's s390x libraries"; return; }
-    foreign s390x s390x-linux-gnu "qemu-s390x-static -L /usr/s390x-linux-gnu -E LD_LIBRARY_PATH=" "$FILES" s390x-linux-gnu-gcc OPENMP=0
+    # The loader must be of the same libc as the libraries: that of libc6:s390x, not the cross compiler's.
+    foreign s390x s390x-linux-gnu "qemu-s390x-static -E LD_LIBRARY_PATH=" "$FILES" s390x-linux-gnu-gcc OPENMP=0
 }
 
 # foreign NAME TRIPLET RUNNER-UP-TO-LIBRARY-PATH TESTS COMPILER MAKE-VARIABLE
@@ -155,7 +220,7 @@ mingw() {
     done
     [ "$wine" != none ] || echo "mingw: built only, wine64 cannot be installed"
     export WINEDEBUG=-all WINEPREFIX="$here/wine"
-    run mingw "$wine" .exe "$WHOLE" CC=$cross-gcc OPENMP=0 EXR=0 \
+    run mingw "$wine" .exe "$WHOLE" CC=$cross-gcc OPENMP=1 EXR=0 \
         CFLAGS="-O1 -isystem $here/mingw-root/include -isystem $here/mingw-root/include/stb" \
         LDLIBS="-L$here/mingw-root/lib -ljansson -lpthread -lm"
     for server in /usr/lib/wine/wineserver64 wineserver; do
@@ -170,5 +235,5 @@ for name in ${*:-musl i386 s390x mingw}; do
     *) echo "tests/portability.sh: no target $name; there are musl, i386, s390x and mingw" >&2; exit 2 ;;
     esac
 done
-echo "$passed passed, $failed failed"
+[ $((passed + failed)) -eq 0 ] || echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -124,13 +124,15 @@ typedef struct Writer {
 
 static void put(const Writer* w, const void* value, int size, const char* text)
 {
+    const uint16_t one = 1;
+    const bool little = *(const uint8_t*)&one == 1; // as this machine's own numbers are
     unsigned char bytes[8];
     memcpy(bytes, value, (size_t)size);
     if (w->format == 0) {
         fprintf(w->file, "%s ", text);
     }
     for (int i = 0; i < size && w->format > 0; i++) {
-        fputc(bytes[w->format == 2 ? size - 1 - i : i], w->file);
+        fputc(bytes[(w->format == 2) == little ? size - 1 - i : i], w->file);
     }
 }
 
