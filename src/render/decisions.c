@@ -345,33 +345,9 @@ static void decideClamp(const vplRunner* r, vplPlan* p)
     }
 }
 
-vplTreesWanted vplTreesOf(const vplPlan* p)
-{
-    return p->options.method == VPL_METHOD_PATH
-               ? (vplTreesWanted){VPL_PATH_EMITTERS_OF_TREE, VPL_PATH_TRIANGLES_OF_TREE}
-               : (vplTreesWanted){p->emittersPerPoint > 0 ? 1 : INT32_MAX,
-                                  p->trianglesPerPoint > 0 ? 1 : INT32_MAX};
-}
-
-// Points on area lights stand for all of them where each may have one, and a mesh that emits is not too large.
-static void chooseTriangles(const vplRunner* r, vplPlan* p)
-{
-    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const int samples = p->options.lights.areaLightSamples;
-    const bool points = p->options.method != VPL_METHOD_PATH && p->options.method != VPL_METHOD_KELLER &&
-                        p->options.lighting == VPL_LIGHTING_PHYSICAL;
-    const int most = samples > VPL_MOST_EMITTERS ? samples : VPL_MOST_EMITTERS;
-    p->emittingTriangles = g->emittingTriangles;
-    if (points && (g->emittingObjects > samples || g->emittingTriangles > most)) {
-        p->trianglesPerPoint = samples;
-        vplDecide(p, "area-light-samples", "for each point a tree chooses %d of the %d triangles that emit",
-                  samples, g->emittingTriangles);
-    }
-}
-
 vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
 {
-    chooseTriangles(r, p);
+    TRY(vplDecideTriangles(r, p));
     TRY(chooseClamp(r, p));
     TRY(countLights(r, p));
     if (p->options.method == VPL_METHOD_SSVP) {
