@@ -139,10 +139,8 @@ static double probabilityOf(const vplPathScene* s, const vplPathVertex* vertex, 
 // a chosen point, times the triangles' share of all power; that share and the lobe of the cosine remain of
 // the ratio. Trees choose an emitter or a triangle with this probability, which is 1 without them: then all
 // emitters are asked, and triangles are chosen by power.
-static inline __attribute__((always_inline)) Connection connect(const vplPathScene* s,
-                                                                const vplPathVertex* vertex,
-                                                                const vplLightPoint* light,
-                                                                double probability)
+static inline __attribute__((always_inline)) Connection
+connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint* light, double probability)
 {
     if (light->emitter < 0 && light->triangle < 0) {
         return connectToSky(s, vertex, vplNegate(light->normal));
@@ -295,7 +293,8 @@ static inline __attribute__((always_inline)) void offer(const vplPathScene* s, c
 }
 
 // Offers directional emitters, and points and spots that the tree chooses by numbers spread evenly from `choice` on.
-static __attribute__((noinline)) void offerFromTree(const vplPathScene* s, const vplPathVertex* v, double choice, Reservoir* r)
+static __attribute__((noinline)) void offerFromTree(const vplPathScene* s, const vplPathVertex* v,
+                                                    double choice, Reservoir* r)
 {
     for (int i = 0; i < s->trees->directionalCount; i++) {
         offer(s, v, s->trees->directional[i], 1, r);
