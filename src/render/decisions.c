@@ -45,6 +45,13 @@ static double rsmBytes(const vplPlan* p, int size)
     return vplReflectiveMapFaces(p) * 8 * size * size;
 }
 
+// More faces than those of 64 points take a quarter of the memory: with 256 points, smaller maps lost nothing that their noise
+// would show (hall of 1,000 points, 128^2 and 256^2 texels: relmse 0.014 and 0.009, energy 0.988 and 0.980, 300 and 875 MiB).
+static double mostRsmBytes(const vplPlan* p)
+{
+    return vplReflectiveMapFaces(p) > 6 * 64 ? VPL_MAX_EMITTER_MAP_BYTES / 4 : VPL_MAX_EMITTER_MAP_BYTES;
+}
+
 void vplDecidePipeline(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
@@ -75,14 +82,15 @@ void vplDecidePipeline(vplPlan* p)
     if (o->shadow.rsmSize == 0) {
         const int usual = ssvp ? MOST_RSM : 256;
         o->shadow.rsmSize = usual;
-        while (o->shadow.rsmSize > LEAST_RSM && rsmBytes(p, o->shadow.rsmSize) > VPL_MAX_EMITTER_MAP_BYTES) {
+        while (o->shadow.rsmSize > LEAST_RSM && rsmBytes(p, o->shadow.rsmSize) > mostRsmBytes(p)) {
             o->shadow.rsmSize /= 2;
         }
         if (ssvp || o->particles.placement == VPL_PLACEMENT_RSM) {
             vplDecide(p, "rsm-size",
-                      o->shadow.rsmSize < usual ? "maps of all emitters together take 1 GiB at most"
-                      : ssvp                    ? "direct light takes its shadows from it, too"
-                                                : "first hits need no more texels");
+                      o->shadow.rsmSize < usual
+                          ? "maps of all emitters together take 1 GiB at most, many a quarter of it"
+                      : ssvp ? "direct light takes its shadows from it, too"
+                             : "first hits need no more texels");
         }
     }
 }

@@ -16,7 +16,6 @@ typedef struct Line {
     const char* group;
     const char* name;
     void (*adjust)(vplPathDef* def);
-    bool byPower; // trees choose by power alone
 } Line;
 
 static void asItIs(vplPathDef* def)
@@ -79,6 +78,12 @@ static void tree(vplPathDef* def)
     def->emittersOfTree = def->trianglesOfTree = 1;
 }
 
+// As tree, but trees choose by power alone.
+static void byPower(vplPathDef* def)
+{
+    def->emittersOfTree = def->trianglesOfTree = 1;
+}
+
 static const Line LINES[] = {
     {"numbers", "scrambled Sobol'", asItIs},
     {"numbers", "random", randomNumbers},
@@ -93,7 +98,7 @@ static const Line LINES[] = {
     {"roulette", "below an eighth", rouletteAtEighth},
     {"roulette", "below a 64th", rouletteAt64th},
     {"lamps", "all, triangles by power", eachEmitter},
-    {"lamps", "by power", tree, true},
+    {"lamps", "by power", byPower},
     {"lamps", "from a tree", tree},
 };
 
@@ -154,7 +159,7 @@ static int run(const vplScene* scene, const vplGeometry* geometry, const vplEmit
         vplPathStats stats;
         vplEmitterTrees* trees = NULL;
         double ms;
-        if (LINES[i].byPower && makeTreesByPower(geometry, &def, &trees) != VPL_SUCCESS) {
+        if (LINES[i].adjust == byPower && makeTreesByPower(geometry, &def, &trees) != VPL_SUCCESS) {
             return 1;
         }
         def.trees = trees;
