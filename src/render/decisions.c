@@ -45,11 +45,12 @@ static double rsmBytes(const vplPlan* p, int size)
     return vplReflectiveMapFaces(p) * 8 * size * size;
 }
 
-// More faces than those of 64 points take a quarter of the memory: with 256 points, smaller maps lost nothing that their noise
-// would show (hall of 1,000 points, 128^2 and 256^2 texels: relmse 0.014 and 0.009, energy 0.988 and 0.980, 300 and 875 MiB).
+// Maps of more than 64 emitters take a quarter of the memory. Smaller maps lost nothing that the noise would show: 1,000 points,
+// 128^2 and 256^2 texels: relmse 0.014 and 0.009, energy 0.988 and 0.980, 300 and 875 MiB; 100 spots, 256^2 and 512^2 texels:
+// relmse 0.022 and 0.023, energy 0.949 and 0.950 (bench/lamps_scene.sh).
 static double mostRsmBytes(const vplPlan* p)
 {
-    return vplReflectiveMapFaces(p) > 6 * 64 ? VPL_MAX_EMITTER_MAP_BYTES / 4 : VPL_MAX_EMITTER_MAP_BYTES;
+    return p->mapEmitterCount > 64 ? VPL_MAX_EMITTER_MAP_BYTES / 4 : VPL_MAX_EMITTER_MAP_BYTES;
 }
 
 void vplDecidePipeline(vplPlan* p)
