@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Tests of trees of emitters as pictures use them: triangles that emit, the stage that makes trees, and their memory.
 #include "geometry/triangle.h"
+#include "lights/light_set.h"
 #include "path_scenes.h"
+#include "render/plan.h"
 #include "render/runner.h"
 
 enum { LAMPS = 100, CLOSE = 1024, SAMPLES = 64 };
@@ -92,27 +94,130 @@ static bool hasStage(const vplPlan* plan, vplStageId id)
     return false;
 }
 
-// One more lamp than points that stand for lamps.
-TEST(TrianglesAreChosenWhereLampsOutnumberTheirPoints, 1)
+// What lights pixels.
+typedef enum Lighting { SAMPLES_BY_POWER, POINT_PER_FACE, POINTS_ON_MESH, CHOSEN } Lighting;
+
+static void checkPlan(const vplScene* scene, const vplRenderOptions* o, Lighting lighting, int points)
+{
+    vplPlan* plan;
+    assert_int_equal(vplPlan_Create(scene, o, NULL, &plan), VPL_SUCCESS);
+    assert_int_equal(plan->options.lights.areaLightSamples, points);
+    assert_int_equal(plan->trianglesPerPoint, lighting != SAMPLES_BY_POWER ? SAMPLES : 0);
+    assert_int_equal(vplPixelsChooseTriangles(plan), lighting == CHOSEN);
+    const bool hits = plan->trianglesPerPoint > 0 && (plan->gathers || plan->compensates);
+    assert_int_equal(hasStage(plan, VPL_STAGE_EMITTER_TREES), lighting == CHOSEN || hits);
+    assert_int_equal(hasStage(plan, VPL_STAGE_AREA_LIGHTS),
+                     lighting != CHOSEN && o->method != VPL_METHOD_KELLER);
+    vplPlan_Destroy(plan);
+}
+
+// Also where the samples that were decided are given as an option.
+static void checkMethods(const vplScene* scene, Lighting lighting, int points)
 {
     static const vplMethod methods[] = {VPL_METHOD_DIRECT, VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_RADIOSITY,
                                         VPL_METHOD_SSVP, VPL_METHOD_KELLER};
-    for (int many = 0; many < 2; many++) {
-        vplScene* scene = hall(context, SAMPLES + many, 0);
-        for (int i = 0; i < 5; i++) {
-            const bool chooses = many && methods[i] != VPL_METHOD_KELLER; // whose lights lie on lamps
-            vplRenderOptions o = plainOptions();
-            vplPlan* plan;
-            o.method = methods[i];
-            assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
-            assert_int_equal(plan->trianglesPerPoint, chooses ? SAMPLES : 0);
-            assert_int_equal(hasStage(plan, VPL_STAGE_EMITTER_TREES), chooses);
-            assert_int_equal(hasStage(plan, VPL_STAGE_AREA_LIGHTS),
-                             !chooses && methods[i] != VPL_METHOD_KELLER);
-            vplPlan_Destroy(plan);
-        }
+    for (int i = 0; i < 5; i++) {
+        const bool keller = methods[i] == VPL_METHOD_KELLER; // whose lights lie on lamps
+        vplRenderOptions o = plainOptions();
+        o.method = methods[i];
+        checkPlan(scene, &o, keller ? SAMPLES_BY_POWER : lighting, keller ? SAMPLES : points);
+        o.lights.areaLightSamples = points;
+        checkPlan(scene, &o, keller ? SAMPLES_BY_POWER : lighting, points);
+    }
+}
+
+TEST(EachOfManyLampsHasAPointAndATreeChoosesAmongMoreThanAThousand, 1)
+{
+    const struct {
+        int quads, points;
+        Lighting lighting;
+    } cases[] = {{SAMPLES, SAMPLES, SAMPLES_BY_POWER},
+                 {SAMPLES + 1, SAMPLES + 1, POINT_PER_FACE},
+                 {VPL_MOST_EMITTERS, VPL_MOST_EMITTERS, POINT_PER_FACE},
+                 {VPL_MOST_EMITTERS + 1, SAMPLES, CHOSEN}};
+    for (int i = 0; i < 4; i++) {
+        vplScene* scene = hall(context, cases[i].quads, 0);
+        checkMethods(scene, cases[i].lighting, cases[i].points);
         vplScene_Destroy(scene);
     }
+}
+
+enum { RINGS = 24, AROUND = 32, GLOWING = 2 * RINGS * AROUND };
+
+// A torus in the hall, or its triangles far from each other, as one mesh.
+static vplScene* glow(vplContext* context, bool scattered)
+{
+    static vplVec3 positions[3 * GLOWING];
+    static uint32_t indices[3 * GLOWING];
+    for (int i = 0; i < 3 * GLOWING; i++) {
+        const int square = i / 6, k = (int[]){0, 2, 1, 1, 2, 3}[i % 6]; // a corner of a square
+        const double u = 2 * VPL_PI * (square / AROUND + (k & 1)) / RINGS,
+                     v = 2 * VPL_PI * (square % AROUND + (k >> 1)) / AROUND, r = 0.25 + 0.1 * cos(v);
+        const vplVec3 p = vplVec((float)(r * cos(u)), (float)(0.1 * sin(v)), (float)(r * sin(u)));
+        positions[i] = scattered ? vplAdd(vplScale(0.02f, p), pointAt((uint64_t)i / 3, 0.8f)) : p;
+        indices[i] = (uint32_t)i;
+    }
+    vplScene* scene = hall(context, 0, 0);
+    vplMeshDef mesh = vplDefaultMeshDef();
+    mesh.positions = positions;
+    mesh.vertexCount = 3 * GLOWING;
+    mesh.indices = indices;
+    mesh.triangleCount = GLOWING;
+    vplObjectDef object = vplDefaultObjectDef();
+    object.type = VPL_OBJECT_MESH;
+    object.material = addGrey(scene, 0.2f, 2);
+    assert_int_equal(vplScene_AddMesh(scene, &mesh, &object.mesh), VPL_SUCCESS);
+    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
+    return scene;
+}
+
+TEST(PointsLieOnCompactMeshesAndATreeChoosesFromScatteredOnes, 1)
+{
+    for (int scattered = 0; scattered < 2; scattered++) {
+        vplScene* scene = glow(context, scattered);
+        checkMethods(scene, scattered ? CHOSEN : POINTS_ON_MESH, scattered ? SAMPLES : 256);
+        vplScene_Destroy(scene);
+    }
+}
+
+// Quads of different sizes: each has a point, a large one several, and together they have the power of all.
+TEST(EachFaceThatEmitsHasAPoint, 1)
+{
+    enum { COUNT = 2 * LAMPS };
+    static vplShadeLight lights[COUNT + LAMPS + 1];
+    vplScene* scene = hall(context, LAMPS, 0);
+    addQuad(scene, addGrey(scene, 0.2f, 2), vplVec(0, 0.9f, 0), 1, 1);
+    vplGeometry* g;
+    vplEmission* e;
+    int most = 0, total = 0;
+    double power = 0;
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    assert_int_equal(vplEmission_Create(g, NULL, 0, &e), VPL_SUCCESS);
+    assert_int_equal(vplCountEmittingFaces(e), LAMPS + 1);
+    const int count = vplSampleEmittingFaces(e, COUNT, lights);
+    for (int quad = 0; quad < LAMPS + 1; quad++) {
+        const int triangle = e->sources[e->firstTriangle + 2 * quad].triangle;
+        const vplTriangleCorners t = vplGeometry_Corners(g, triangle); // the quad's diagonal is an edge
+        int on = 0;
+        for (int i = 0; i < count; i++) {
+            const vplVec3 p = vplVec(lights[i].px, lights[i].py, lights[i].pz);
+            const double height = vplDot(vplSub(p, t.corner[0]), g->normals[triangle]);
+            on += i >= total && on == i - total && fabs(height) < 1e-6;
+        }
+        assert_true(on >= 1);
+        total += on;
+        most = on > most ? on : most;
+    }
+    for (int i = 0; i < count; i++) {
+        power += VPL_PI * (double)lights[i].r;
+    }
+    printf("# %d points, %d on the large quad\n", count, most);
+    assert_int_equal(total, count);
+    assert_true(most > 10);
+    assertNear(power, vplEmission_Power(e), 1e-5 * power, "power", 0);
+    vplEmission_Destroy(e);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
 }
 
 // Passes, frames and other stages share the trees, until an emitter moves.

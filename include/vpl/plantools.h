@@ -69,7 +69,9 @@ struct vplPlan {
     bool emitterRays;     // emitters are shadowed by rays, not by maps
     int emittersPerPoint; // that a tree chooses for each point, in direct light; 0: all light it
     int emittingTriangles;
-    int trianglesPerPoint; // that emit and that a tree chooses for each point, in direct light; 0: points stand for all
+    // Triangles that emit and that a tree chooses for each point, in direct light; 0: points on them stand for all. Where
+    // options.lights.areaLightSamples is more, pixels have so many points on them, and only hits of rays choose.
+    int trianglesPerPoint;
     bool hasAreaLights; // a material emits light
     bool hasSky;        // the scene has an environment
     bool hasCutOuts;    // materials let light through

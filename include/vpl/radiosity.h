@@ -113,10 +113,10 @@ vplFormFactorDef vplDefaultFormFactorDef(void);
 // F[i][j]: the fraction of what side i emits that arrives at side j. Read only.
 typedef struct vplFormFactors {
     int count;
-    const float* rows;    // [i][j]; NULL where a team shares them
-    const float* rowSums; // before vplFormFactorDef.rowSums corrected them
+    const float* rows;           // [i][j]; NULL where a team shares them
+    const float* rowSums;        // before vplFormFactorDef.rowSums corrected them
     int64_t rays, analyticPairs; // of this process
-    struct vplArena* arena; // owns the arrays
+    struct vplArena* arena;      // owns the arrays
     vplContext* context;
 } vplFormFactors;
 

@@ -276,6 +276,13 @@ vplResult vplEmitterTree_Create(vplArena* arena, const vplEmission* emission, in
     return VPL_SUCCESS;
 }
 
+void vplEmitterTree_ForgetPlaces(vplEmitterTree* t)
+{
+    for (int i = 0; i < 2 * t->count - 1; i++) {
+        t->nodes[i].radius = 0x1p60f; // every point is inside, where only strength counts
+    }
+}
+
 // ---- choosing
 
 // Cosine and sine of max(a - b, 0), of two angles up to half a turn.

@@ -21,6 +21,9 @@ typedef struct vplChosenSource {
 vplResult vplEmitterTree_Create(vplArena* arena, const vplEmission* emission, int first, int end,
                                 vplEmitterTree** treeOut);
 
+// Sources are chosen by their strength alone from now on, for comparisons.
+void vplEmitterTree_ForgetPlaces(vplEmitterTree* tree);
+
 // Chooses a source for a point and the normal of the side that is lit, by a number in [0, 1), in O(log n). A source that
 // may light the point has a probability greater than 0. Together they may stay below 1: bounds are loose, and a choice can
 // end where no source lights the point.

@@ -7,6 +7,7 @@
 
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
+#include "lights/light_set.h"
 #include "math/double3.h"
 #include "math/vec.h"
 
@@ -149,4 +150,27 @@ int vplSampleAreaLights(const vplEmission* e, int count, vplShadeLight* out)
         }
     }
     return count;
+}
+
+int vplCountEmittingFaces(const vplEmission* e)
+{
+    int count = 0;
+    for (int at = e->firstTriangle; at < e->sourceCount; at = pieceEnd(e, at)) {
+        count++;
+    }
+    return count;
+}
+
+int vplSampleEmittingFaces(const vplEmission* e, int count, vplShadeLight* out)
+{
+    const double *sums = e->cumulative, all = sums[e->sourceCount] - sums[e->firstTriangle];
+    int done = 0;
+    for (int at = e->firstTriangle, next; at < e->sourceCount; at = next) {
+        next = pieceEnd(e, at);
+        const double power = sums[next] - sums[at], share = power / all * count;
+        const int n = share < 1 ? 1 : (int)share;
+        samplePiece(e, at, next, n, power / (sums[at + 1] - sums[at]) / n, out + done);
+        done += n;
+    }
+    return done;
 }

@@ -139,8 +139,8 @@ static double probabilityOf(const vplPathScene* s, const vplPathVertex* vertex, 
 // a chosen point, times the triangles' share of all power; that share and the lobe of the cosine remain of
 // the ratio. Trees choose an emitter or a triangle with this probability, which is 1 without them: then all
 // emitters are asked, and triangles are chosen by power.
-static Connection connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint* light,
-                          double probability)
+static inline __attribute__((always_inline)) Connection
+connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint* light, double probability)
 {
     if (light->emitter < 0 && light->triangle < 0) {
         return connectToSky(s, vertex, vplNegate(light->normal));
@@ -160,10 +160,7 @@ static Connection connect(const vplPathScene* s, const vplPathVertex* vertex, co
     }
     found.cosineAtLight = e ? 1 : -along(light->normal, to);
     const double flat = along(vertex->normal, to), cosine = along(vertex->shading, to);
-    if (!(found.distance > 0 && found.cosineAtLight > 0 && flat > 0 && cosine > 0)) {
-        return none;
-    }
-    if (!(probability > 0)) {
+    if (!(found.distance > 0 && found.cosineAtLight > 0 && flat > 0 && cosine > 0 && probability > 0)) {
         return none;
     }
     if (e != NULL) {
@@ -257,8 +254,8 @@ static void addTriangle(vplPathState* path, const vplPathVertex* v, double choic
     }
 }
 
-static Connection connectToEmitter(const vplPathScene* s, const vplPathVertex* v, int emitter,
-                                   double probability)
+static inline __attribute__((always_inline)) Connection
+connectToEmitter(const vplPathScene* s, const vplPathVertex* v, int emitter, double probability)
 {
     vplLightPoint light = {emitter, -1, s->emission->emitters[emitter].position, {0, 0, 0}};
     Connection c = connect(s, v, &light, probability);
@@ -274,8 +271,9 @@ typedef struct Reservoir {
     int emitter;
 } Reservoir;
 
-static void offer(const vplPathScene* s, const vplPathVertex* v, int emitter, double probability,
-                  Reservoir* r)
+// Inline, so that scenes with few emitters keep the reservoir in registers: 1.2 % of their instructions.
+static inline __attribute__((always_inline)) void offer(const vplPathScene* s, const vplPathVertex* v,
+                                                        int emitter, double probability, Reservoir* r)
 {
     const Connection c = connectToEmitter(s, v, emitter, probability);
     double power = c.value.r + c.value.g + c.value.b;
@@ -295,7 +293,8 @@ static void offer(const vplPathScene* s, const vplPathVertex* v, int emitter, do
 }
 
 // Offers directional emitters, and points and spots that the tree chooses by numbers spread evenly from `choice` on.
-static void offerFromTree(const vplPathScene* s, const vplPathVertex* v, double choice, Reservoir* r)
+static __attribute__((noinline)) void offerFromTree(const vplPathScene* s, const vplPathVertex* v,
+                                                    double choice, Reservoir* r)
 {
     for (int i = 0; i < s->trees->directionalCount; i++) {
         offer(s, v, s->trees->directional[i], 1, r);
@@ -316,9 +315,10 @@ static void addEmitter(vplPathState* path, const vplPathVertex* v, const float u
     Reservoir r = {.choice = (double)u[s->trees->emitters != NULL ? 1 : 0], .power = 1, .emitter = -1};
     if (s->trees->emitters != NULL) {
         offerFromTree(s, v, refine(u[0], u[3]), &r);
-    }
-    for (int i = 0; i < s->emission->emitterCount && s->trees->emitters == NULL; i++) {
-        offer(s, v, i, 1, &r);
+    } else {
+        for (int i = 0; i < s->emission->emitterCount; i++) {
+            offer(s, v, i, 1, &r);
+        }
     }
     if (r.emitter >= 0 && isEmitterVisible(path, v, &s->emission->emitters[r.emitter], &r.chosen)) {
         vplRadiance_Add(sum, vplRadiance_Scale(r.total / r.power, r.chosen.value));

@@ -91,6 +91,14 @@ vplRay vplPathScene_CameraRay(const vplPathScene* s, int x, int y, const float o
     return ray;
 }
 
+// Apart from vplPathVertex_Make, which it would make save registers in scenes without textures.
+static __attribute__((noinline)) vplRgb paintAt(const vplGeometry* g, const vplHit* hit, vplVec3 direction,
+                                                float width)
+{
+    const vplFootprint footprint = {vplNormalize(direction), width};
+    return vplPaint_Reflectance(g, hit->triangle, hit->position, &footprint);
+}
+
 vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction, float width)
 {
     const vplGeometry* g = s->geometry;
@@ -98,12 +106,8 @@ vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVe
                        .normal = hit->normal,
                        .shading = vplGeometry_ShadingNormal(g, hit),
                        .density = INFINITY};
-    if (g->paint == NULL) {
-        v.rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
-    } else {
-        const vplFootprint footprint = {vplNormalize(direction), width};
-        v.rho = vplPaint_Reflectance(g, hit->triangle, hit->position, &footprint);
-    }
+    v.rho = g->paint == NULL ? g->materials[g->triangleMaterials[hit->triangle]].diffuse
+                             : paintAt(g, hit, direction, width);
     if (vplDot(direction, hit->normal) > 0) {
         v.normal = vplNegate(v.normal);
         v.shading = vplNegate(v.shading);

@@ -104,7 +104,7 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
     const bool sky = s->plan->hasSky && o->method != VPL_METHOD_KELLER;
     const double rays =
         (s->plan->emitterRays ? s->emitters : 0) +
-        (area ? o->lights.areaLightSamples * (s->plan->trianglesPerPoint > 0 ? CHOICE_WORK : 1) : 0) +
+        (area ? o->lights.areaLightSamples * (vplPixelsChooseTriangles(s->plan) ? CHOICE_WORK : 1) : 0) +
         (sky ? o->lights.skySamples : 0);
     if (s->plan->showsDirect) {
         // Emitters are mostly in front of what is seen, also where surfaces do not face each other.

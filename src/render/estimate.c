@@ -245,7 +245,7 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_EMITTER_TREES:
         return emitterTrees(p);
     case VPL_STAGE_AREA_LIGHTS:
-        return (Bytes){(o->lights.areaLightSamples + (p->hasSky ? o->lights.skySamples : 0)) *
+        return (Bytes){(2.0 * o->lights.areaLightSamples + (p->hasSky ? o->lights.skySamples : 0)) *
                            (double)sizeof(vplShadeLight),
                        0};
     case VPL_STAGE_REFLECTIVE_MAPS: // a distance and a triangle per texel

@@ -66,6 +66,12 @@ vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 // The least numbers of emitters and of triangles that emit from which points choose by a tree.
 vplTreesWanted vplTreesOf(const vplPlan* plan);
 
+// Decides how triangles that emit light pixels.
+vplResult vplDecideTriangles(const vplRunner* runner, vplPlan* plan);
+
+// True if pixels choose triangles that emit; else points on them light pixels, also where hits of rays choose.
+bool vplPixelsChooseTriangles(const vplPlan* plan);
+
 // The bytes of form factors of all pairs that this process holds, and those that it needs besides while it computes them.
 vplSharedBytes vplEstimateFactors(const vplRunner* runner, const vplPlan* plan);
 

@@ -93,8 +93,8 @@ static bool needsAreaLights(const vplPlan* p, char* why)
     const bool patches = p->hasSky && p->showsPatches; // which the environment lights
     const char* problem = !p->showsDirect && !p->compensates && !p->gathers && !patches ? NOT_DIRECT
                           : !p->hasAreaLights && !p->hasSky                             ? "no material emits"
-                          : documented                             ? "documented lighting has no area lights"
-                          : p->trianglesPerPoint > 0 && !p->hasSky ? "points choose among them by a tree"
+                          : documented ? "documented lighting has no area lights"
+                          : vplPixelsChooseTriangles(p) && !p->hasSky ? "points choose among them by a tree"
                           : p->options.method == VPL_METHOD_KELLER
                               ? p->hasSky ? "virtual lights stand for area lights and the environment, too"
                                           : "virtual lights stand for area lights, too"
@@ -107,7 +107,8 @@ static bool needsAreaLights(const vplPlan* p, char* why)
                          p->options.lights.areaLightSamples)
                : because(why, true, "%d directions stand for the environment in direct light%s",
                          p->options.lights.skySamples,
-                         p->hasAreaLights && p->trianglesPerPoint == 0 ? ", and points for area lights" : "");
+                         p->hasAreaLights && !vplPixelsChooseTriangles(p) ? ", and points for area lights"
+                                                                          : "");
 }
 
 static bool needsReflectiveMaps(const vplPlan* p, char* why)

@@ -78,6 +78,12 @@ static void tree(vplPathDef* def)
     def->emittersOfTree = def->trianglesOfTree = 1;
 }
 
+// As tree, but trees choose by power alone.
+static void byPower(vplPathDef* def)
+{
+    def->emittersOfTree = def->trianglesOfTree = 1;
+}
+
 static const Line LINES[] = {
     {"numbers", "scrambled Sobol'", asItIs},
     {"numbers", "random", randomNumbers},
@@ -92,6 +98,7 @@ static const Line LINES[] = {
     {"roulette", "below an eighth", rouletteAtEighth},
     {"roulette", "below a 64th", rouletteAt64th},
     {"lamps", "all, triangles by power", eachEmitter},
+    {"lamps", "by power", byPower},
     {"lamps", "from a tree", tree},
 };
 
@@ -117,6 +124,21 @@ static vplResult measure(const vplGeometry* geometry, const vplPathDef* def, int
     return result;
 }
 
+static vplResult makeTreesByPower(const vplGeometry* geometry, const vplPathDef* def,
+                                  vplEmitterTrees** treesOut)
+{
+    const vplTreesWanted all = {1, 1};
+    const vplResult result =
+        vplEmitterTrees_Create(geometry, def->emitters, def->emitterCount, all, treesOut);
+    if (result == VPL_SUCCESS && (*treesOut)->emitters != NULL) {
+        vplEmitterTree_ForgetPlaces((*treesOut)->emitters);
+    }
+    if (result == VPL_SUCCESS && (*treesOut)->triangles != NULL) {
+        vplEmitterTree_ForgetPlaces((*treesOut)->triangles);
+    }
+    return result;
+}
+
 static int run(const vplScene* scene, const vplGeometry* geometry, const vplEmitterDef* emitters, int samples,
                int size, const char* only)
 {
@@ -135,10 +157,16 @@ static int run(const vplScene* scene, const vplGeometry* geometry, const vplEmit
         def.emission = false; // aliasing at the edges of visible emitters would dominate the error
         LINES[i].adjust(&def);
         vplPathStats stats;
+        vplEmitterTrees* trees = NULL;
         double ms;
+        if (LINES[i].adjust == byPower && makeTreesByPower(geometry, &def, &trees) != VPL_SUCCESS) {
+            return 1;
+        }
+        def.trees = trees;
         if (measure(geometry, &def, samples, &stats, &ms) != VPL_SUCCESS) {
             return 1;
         }
+        vplEmitterTrees_Destroy(trees);
         double cost = stats.errorEstimate * stats.errorEstimate * ms;
         if (i == 0 || strcmp(LINES[i].group, LINES[i - 1].group) != 0) {
             first = cost;

@@ -58,7 +58,7 @@ vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights
                                        const vplShadow* shadows)
 {
     const vplPlan* plan = run->plan;
-    const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
+    const vplAreaLights area = vplAreaLightsOfHits(run);
     const bool keller = plan->options.method == VPL_METHOD_KELLER;
     const float distance =
         lights->emitterLightCount > 0 ? areaLightDistance(run->results[VPL_STAGE_GEOMETRY]) : 0;
@@ -75,11 +75,9 @@ vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights
                               .reflection = 1,
                               .emitterLightCount = lights->emitterLightCount,
                               .emitterLightDistance = distance};
-    if (area != NULL) {
-        def.areaLights = area->lights;
-        def.areaLightCount = area->count;
-        def.areaLightMinDistance = area->minDistance;
-    }
+    def.areaLights = area.lights;
+    def.areaLightCount = area.count;
+    def.areaLightMinDistance = area.minDistance;
     if (plan->options.lighting == VPL_LIGHTING_DOCUMENTED) {
         def.reflection = (float)(1 / VPL_PI);
     }

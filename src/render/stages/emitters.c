@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stages for emitters: shadow maps of points and spots, points on area lights, and reflective shadow
 // maps.
+#include "lights/light_set.h"
 #include "render/plan.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -105,20 +106,33 @@ void vplDestroyEmitterTrees(void* result)
 
 // ---- area lights and the environment
 
+// Points on area lights; none where pixels choose triangles. Where many objects emit, each face has one.
+static int samplePoints(const vplRun* run, const vplEmission* emission, vplShadeLight* out)
+{
+    const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
+    const int count = run->plan->options.lights.areaLightSamples;
+    if (vplPixelsChooseTriangles(run->plan)) {
+        return 0;
+    }
+    return run->plan->trianglesPerPoint > 0 && g->emittingObjects > VPL_EMITTERS_PER_POINT
+               ? vplSampleEmittingFaces(emission, count, out)
+               : vplSampleAreaLights(emission, count, out);
+}
+
 vplResult vplMakeAreaLights(const vplRun* run, void** resultOut)
 {
     const vplLightOptions* o = &run->plan->options.lights;
-    const bool chosen = run->plan->trianglesPerPoint > 0; // from a tree
-    const int count = o->areaLightSamples, skyCount = run->plan->hasSky ? o->skySamples : 0;
+    const int skyCount = run->plan->hasSky ? o->skySamples : 0;
+    const size_t room = 2 * (size_t)o->areaLightSamples + (size_t)skyCount; // faces are no more than samples
     vplAreaLights* area = vplArena_AllocZero(run->arena, 1, sizeof *area);
-    vplShadeLight* lights = vplArena_Alloc(run->arena, (size_t)count + (size_t)skyCount, sizeof *lights);
+    vplShadeLight* lights = vplArena_Alloc(run->arena, room, sizeof *lights);
     vplEmission* emission;
     TRY(vplArena_Check(run->arena));
     TRY(vplEmission_Create(run->results[VPL_STAGE_GEOMETRY], NULL, 0, &emission));
     if (emission->sourceCount > 0) {
         area->lights = lights;
-        area->count = chosen ? 0 : vplSampleAreaLights(emission, count, lights);
-        area->minDistance = (float)(0.5 * sqrt(vplEmission_Area(emission) / count / VPL_PI));
+        area->count = samplePoints(run, emission, lights);
+        area->minDistance = (float)(0.5 * sqrt(vplEmission_Area(emission) / o->areaLightSamples / VPL_PI));
         area->skyCount = skyCount > 0 ? vplSampleSky(emission, skyCount, lights + area->count) : 0;
         area->count += area->skyCount;
     }

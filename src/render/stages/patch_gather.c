@@ -80,7 +80,7 @@ vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
     const vplPatchLight* patchLight = run->results[VPL_STAGE_PATCH_LIGHT];
     const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
-    const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
+    const vplAreaLights area = vplAreaLightsOfHits(run);
     KnownLight* light = vplArena_Alloc(run->scratch, 1, sizeof *light);
     vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)mesh->sides->count, sizeof *reflected);
     int* first = vplArena_Alloc(run->scratch, (size_t)mesh->sides->patches->patchCount + 1, sizeof *first);
@@ -95,10 +95,8 @@ vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
                              .emitters = run->plan->emitters,
                              .emitterCount = run->plan->emitterCount,
                              .trianglesPerPoint = run->plan->trianglesPerPoint};
-    if (area != NULL) {
-        defOut->areaLights = area->lights;
-        defOut->areaLightCount = area->count;
-        defOut->areaLightMinDistance = area->minDistance;
-    }
+    defOut->areaLights = area.lights;
+    defOut->areaLightCount = area.count;
+    defOut->areaLightMinDistance = area.minDistance;
     return VPL_SUCCESS;
 }

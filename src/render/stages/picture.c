@@ -2,6 +2,7 @@
 // The picture: direct light, virtual lights and patches, added up for every sample of every pixel.
 #include "base/clock.h"
 #include "math/sampling.h"
+#include "render/plan.h"
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -139,7 +140,7 @@ static void addDirect(const vplRun* run, const vplShadow* shadows, vplShadeDef* 
     def->shadows = shadows;
     def->emitterCount = run->plan->emitterCount;
     def->emission = true;
-    def->trianglesPerPoint = run->plan->trianglesPerPoint;
+    def->trianglesPerPoint = vplPixelsChooseTriangles(run->plan) ? run->plan->trianglesPerPoint : 0;
     if (area != NULL) {
         def->areaLights = area->lights;
         def->areaLightCount = area->count;

@@ -26,6 +26,17 @@ typedef struct vplAreaLights {
     float minDistance; // metres
 } vplAreaLights;
 
+// The points of a stage's result that light hits of rays; where hits choose triangles, only the environment's.
+static inline vplAreaLights vplAreaLightsOfHits(const vplRun* run)
+{
+    const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
+    if (area == NULL) {
+        return (vplAreaLights){.count = 0};
+    }
+    const int left = run->plan->trianglesPerPoint > 0 ? area->count - area->skyCount : 0;
+    return (vplAreaLights){area->lights + left, area->count - left, area->skyCount, area->minDistance};
+}
+
 // VPL_STAGE_REFLECTIVE_MAPS: one per emitter.
 typedef struct vplReflectiveMaps {
     vplReflectiveMap** maps; // NULL where the emitter has no power
