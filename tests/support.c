@@ -262,6 +262,31 @@ vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vp
     return image;
 }
 
+double errorAgainstPaths(const vplScene* scene, const vplImage* image)
+{
+    vplImage* halves[2];
+    double square = 0, sum = 0;
+    const size_t values = 3 * (size_t)image->width * (size_t)image->height;
+    for (int i = 0; i < 2; i++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        o.output.width = image->width;
+        o.output.height = image->height;
+        o.method = VPL_METHOD_PATH;
+        o.path.samples = 256;
+        o.seed = 77 + (uint64_t)i;
+        halves[i] = renderScene(scene, &o, NULL);
+    }
+    for (size_t k = 0; k < values; k++) {
+        const double x = (double)image->pixels[k], a = (double)halves[0]->pixels[k],
+                     b = (double)halves[1]->pixels[k];
+        square += (x - a) * (x - b);
+        sum += 0.5 * (a + b);
+    }
+    vplImage_Destroy(halves[0]);
+    vplImage_Destroy(halves[1]);
+    return sqrt(fmax(0, square) * (double)values) / sum;
+}
+
 void assertSameEverywhere(uint64_t (*hashOf)(vplContext* context))
 {
     const uint64_t wanted = hashOf(openTestContext(1));

@@ -110,6 +110,10 @@ vplScene* openScene(vplContext* context, const char* path);
 // Calls vplRender; a failure fails the test with the library's message. statsOut may be NULL.
 vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut);
 
+// Computes the root-mean-square error of a picture over its mean, against two path-traced pictures of 256 paths per pixel. Their
+// noise is independent, so that it cancels.
+double errorAgainstPaths(const vplScene* scene, const vplImage* image);
+
 // Tests of times wait longer where a sanitizer watches each access to memory.
 #ifdef __SANITIZE_ADDRESS__
 #define TEST_SLOWDOWN 10

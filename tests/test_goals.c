@@ -10,32 +10,6 @@ static vplRenderOptions smallOptions(void)
     return o;
 }
 
-// The relative error of a picture against two path-traced ones, whose noise cancels.
-static double errorOf(const vplScene* scene, const vplRenderOptions* like, const vplImage* image)
-{
-    vplImage* halves[2];
-    double square = 0, sum = 0;
-    const size_t values = 3 * (size_t)image->width * (size_t)image->height;
-    for (int i = 0; i < 2; i++) {
-        vplRenderOptions o = vplDefaultRenderOptions();
-        o.output.width = like->output.width;
-        o.output.height = like->output.height;
-        o.method = VPL_METHOD_PATH;
-        o.path.samples = 256;
-        o.seed = 77 + (uint64_t)i;
-        halves[i] = renderScene(scene, &o, NULL);
-    }
-    for (size_t k = 0; k < values; k++) {
-        const double x = (double)image->pixels[k], a = (double)halves[0]->pixels[k],
-                     b = (double)halves[1]->pixels[k];
-        square += (x - a) * (x - b);
-        sum += 0.5 * (a + b);
-    }
-    vplImage_Destroy(halves[0]);
-    vplImage_Destroy(halves[1]);
-    return sqrt(fmax(0, square) * (double)values) / sum;
-}
-
 TEST(TheErrorThatIsAskedForIsKept, 2)
 {
     static const char* const SCENES[] = {"room.json", "room-closed.json"};
@@ -45,7 +19,7 @@ TEST(TheErrorThatIsAskedForIsKept, 2)
         o.stop.maxError = i % 2 ? 0.1 : 0.3;
         vplRenderStats stats;
         vplImage* image = renderScene(scene, &o, &stats);
-        assert_true(errorOf(scene, &o, image) <= o.stop.maxError);
+        assert_true(errorAgainstPaths(scene, image) <= o.stop.maxError);
         assert_true(stats.relativeErrorEstimate > 0 && stats.relativeErrorEstimate <= o.stop.maxError);
         assert_true((stats.relativeNoise > 0) == (stats.passes > 1) && stats.relativeBias >= 0);
         const double noise = fmax(0, stats.relativeNoise); // unknown after one pass

@@ -22,7 +22,7 @@ const char* vplImage_GetExtensions(void);
 vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
                           uint8_t** bytesOut, size_t* sizeOut);
 
-// Frees the bytes from vplImage_Encode and others. NULL is allowed.
+// Frees the bytes of an encoded file or of a piece of a picture. NULL is allowed.
 void vplBytes_Free(vplContext* context, uint8_t* bytes);
 
 // Kinds of layers of an .exr file.
@@ -53,7 +53,8 @@ enum { VPL_MAX_LAYER_INDEX = 1 << 24, VPL_MAX_LAYER_NAME = 24 };
 // VPL_OUT_OF_MEMORY.
 vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path);
 
-// Encodes the file that vplImage_WriteLayers would write. Free the bytes with vplBytes_Free.
+// Encodes layers as the bytes of the .exr file that vplImage_WriteLayers writes. Free them with vplBytes_Free. Errors as
+// vplImage_WriteLayers but VPL_FILE_ERROR; VPL_INVALID_ARGUMENT also for a count below 1.
 vplResult vplImage_EncodeLayers(const vplLayer* layers, int count, uint8_t** bytesOut, size_t* sizeOut);
 
 // Reads one layer of an .exr file: the channels R, G and B or X, Y and Z behind NAME and a dot, or the

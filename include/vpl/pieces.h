@@ -65,9 +65,9 @@ int vplAssembly_CountMissing(const vplAssembly* assembly);
 // Gets the whole picture; destroy it with vplImage_Destroy. VPL_INVALID_ARGUMENT names the first piece that is missing.
 vplResult vplAssembly_GetImage(const vplAssembly* assembly, vplImage** imageOut);
 
-// Gets the whole picture with the layers of options.output.aovs, with the bits of vplRenderLayers. The renderer must be of the
-// pieces' scene and options; it draws the layers of surfaces, while direct light is in the pieces. Errors of
-// vplAssembly_GetImage, vplAssembly_CheckRenderer and vplRenderer_GetLayers.
+// Gets the whole picture and the layers of options.output.aovs, with the bits of vplRenderLayers; destroy them with
+// vplLayers_Destroy. Direct light comes from the pieces. The renderer, which must have their scene and options, draws the layers of
+// surfaces. Errors of vplAssembly_GetImage, vplAssembly_CheckRenderer and vplRenderer_GetLayers.
 vplResult vplAssembly_GetLayers(const vplAssembly* assembly, vplRenderer* renderer, vplLayers** layersOut);
 
 VPL_HEADER_END

@@ -69,8 +69,8 @@ struct vplPlan {
     bool emitterRays;     // emitters are shadowed by rays, not by maps
     int emittersPerPoint; // that a tree chooses for each point, in direct light; 0: all light it
     int emittingTriangles;
-    // Triangles that emit and that a tree chooses for each point, in direct light; 0: points on them stand for all. Where
-    // options.lights.areaLightSamples is more, pixels have so many points on them, and only hits of rays choose.
+    // How many of the emitting triangles a tree chooses for each point that direct light falls on; 0: samples on them stand for
+    // all. If options.lights.areaLightSamples is greater, pixels use that many samples, and only hits of rays use the tree.
     int trianglesPerPoint;
     bool hasAreaLights; // a material emits light
     bool hasSky;        // the scene has an environment

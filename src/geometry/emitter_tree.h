@@ -21,7 +21,7 @@ typedef struct vplChosenSource {
 vplResult vplEmitterTree_Create(vplArena* arena, const vplEmission* emission, int first, int end,
                                 vplEmitterTree** treeOut);
 
-// Sources are chosen by their strength alone from now on, for comparisons.
+// Makes the tree choose sources by power alone, wherever the lit point is; for comparisons.
 void vplEmitterTree_ForgetPlaces(vplEmitterTree* tree);
 
 // Chooses a source for a point and the normal of the side that is lit, by a number in [0, 1), in O(log n). A source that

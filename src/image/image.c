@@ -140,6 +140,18 @@ static vplResult encode(const Format* format, const vplImage* image, const char*
     return buffer->failed ? VPL_OUT_OF_MEMORY : VPL_SUCCESS;
 }
 
+// Gives the caller the bytes of a file that was encoded.
+static vplResult deliver(vplResult result, vplByteBuffer* buffer, uint8_t** bytesOut, size_t* sizeOut)
+{
+    if (result != VPL_SUCCESS) {
+        vplFree(buffer->context, buffer->bytes);
+        return result;
+    }
+    *bytesOut = buffer->bytes;
+    *sizeOut = buffer->size;
+    return VPL_SUCCESS;
+}
+
 vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
                           uint8_t** bytesOut, size_t* sizeOut)
 {
@@ -149,14 +161,7 @@ vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWrit
                        "%s: unknown picture format; the name must end in %s", name, vplImage_GetExtensions());
     }
     vplByteBuffer buffer = {.context = image->context};
-    const vplResult result = encode(findFormat(name), image, name, options, &buffer);
-    if (result != VPL_SUCCESS) {
-        vplFree(image->context, buffer.bytes);
-        return result;
-    }
-    *bytesOut = buffer.bytes;
-    *sizeOut = buffer.size;
-    return VPL_SUCCESS;
+    return deliver(encode(findFormat(name), image, name, options, &buffer), &buffer, bytesOut, sizeOut);
 }
 
 void vplBytes_Free(vplContext* context, uint8_t* bytes)
@@ -167,15 +172,20 @@ void vplBytes_Free(vplContext* context, uint8_t* bytes)
     vplFree(context, bytes);
 }
 
+static vplResult writeAndFree(vplContext* context, const char* path, uint8_t* bytes, size_t size)
+{
+    const vplResult result = vplWriteFile(context, path, bytes, size);
+    vplFree(context, bytes);
+    return result;
+}
+
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
 {
     REQUIRE(CONTEXT_OF(image), image, path);
     uint8_t* bytes;
     size_t size;
     TRY(vplImage_Encode(image, path, options, &bytes, &size));
-    const vplResult result = vplWriteFile(image->context, path, bytes, size);
-    vplBytes_Free(image->context, bytes);
-    return result;
+    return writeAndFree(image->context, path, bytes, size);
 }
 
 // ---- layers
@@ -220,13 +230,7 @@ vplResult vplImage_EncodeLayers(const vplLayer* layers, int count, uint8_t** byt
     vplByteBuffer buffer = {.context = context};
     vplResult result = vplEncodeExrLayers(layers, count, &buffer);
     result = result == VPL_SUCCESS && buffer.failed ? VPL_OUT_OF_MEMORY : result;
-    if (result != VPL_SUCCESS) {
-        vplFree(context, buffer.bytes);
-        return result;
-    }
-    *bytesOut = buffer.bytes;
-    *sizeOut = buffer.size;
-    return VPL_SUCCESS;
+    return deliver(result, &buffer, bytesOut, sizeOut);
 }
 
 vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path)
@@ -241,9 +245,7 @@ vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* pa
         return vplFail(context, VPL_INVALID_ARGUMENT, "%s: only .exr files have layers", path);
     }
     TRY(vplImage_EncodeLayers(layers, count, &bytes, &size));
-    const vplResult result = vplWriteFile(context, path, bytes, size);
-    vplBytes_Free(context, bytes);
-    return result;
+    return writeAndFree(context, path, bytes, size);
 }
 
 vplResult vplImage_ReadLayer(vplContext* context, const char* path, const char* name, vplImage** imageOut)

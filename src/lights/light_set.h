@@ -30,11 +30,11 @@ vplResult vplLightSet_MakeSubset(const vplLightSet* from, int capacity, vplLight
 // kept. N is that of `a`, and the weights of `b` are adapted to it, unless `a` has none.
 vplResult vplLightSet_Join(const vplLightSet* a, const vplLightSet* b, vplLightSet** setOut);
 
-// Faces of quads and boxes, and other triangles, that emit.
+// Counts emitting faces: faces of quads and boxes, and single triangles of meshes.
 int vplCountEmittingFaces(const vplEmission* emission);
 
-// About `count` samples of area lights, at least one for each face and together its power. Returns how many were written, at most
-// count + vplCountEmittingFaces(emission).
+// Writes about `count` samples on area lights: each emitting face has at least one, and the samples of a face share its power.
+// Returns how many were written, at most count + vplCountEmittingFaces(emission).
 int vplSampleEmittingFaces(const vplEmission* emission, int count, vplShadeLight* out);
 
 // One light of N particles as kernels read it, see vplPrepareLights.

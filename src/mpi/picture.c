@@ -12,8 +12,7 @@
 // more than dynamic scheduling needs: with 4 the last piece is at most a quarter of a rank's work.
 enum { PIECES_PER_RANK = 4 };
 
-// A piece that the plan expects to take less time than this is not divided further: it costs two messages and the setup of
-// its pass.
+// A picture is not divided into pieces that the plan predicts to take less time than this: each costs two messages.
 static const double LEAST_MS = 10;
 
 typedef struct Picture {

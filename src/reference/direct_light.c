@@ -271,7 +271,7 @@ typedef struct Reservoir {
     int emitter;
 } Reservoir;
 
-// Inline, so that scenes with few emitters keep the reservoir in registers: 1.2 % of their instructions.
+// Always inlined, so that the reservoir stays in registers: saves 1.2 % of the instructions in scenes with few emitters.
 static inline __attribute__((always_inline)) void offer(const vplPathScene* s, const vplPathVertex* v,
                                                         int emitter, double probability, Reservoir* r)
 {

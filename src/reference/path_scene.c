@@ -91,7 +91,7 @@ vplRay vplPathScene_CameraRay(const vplPathScene* s, int x, int y, const float o
     return ray;
 }
 
-// Apart from vplPathVertex_Make, which it would make save registers in scenes without textures.
+// Not inlined: inside vplPathVertex_Make it costs scenes without textures saved registers.
 static __attribute__((noinline)) vplRgb paintAt(const vplGeometry* g, const vplHit* hit, vplVec3 direction,
                                                 float width)
 {

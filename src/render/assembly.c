@@ -11,7 +11,7 @@
 
 // A pass that waits for those before it.
 typedef struct Waiting {
-    float* values; // and those of direct light, if passes have it; NULL: it does not wait
+    float* values; // of the pass, then of its direct light if pieces have it; NULL: the pass does not wait
     double share;
 } Waiting;
 
@@ -20,11 +20,10 @@ struct vplAssembly {
     vplPieceHeader first; // of the first piece that was added; grid.count 0: none was
     vplImage* base;       // direct light of a mean, else the picture
     double* sums;         // of the passes of a mean
-    vplImage*
-        direct; // for layers: direct light alone, of a mean the sum of what passes add; NULL: there is none
-    double* weights;  // of each band
-    int* next;        // the pass of each band that is added next
-    Waiting* waiting; // of each piece
+    vplImage* direct;     // direct light alone, of a mean the sum over passes; NULL: no piece has it
+    double* weights;      // of each band
+    int* next;            // the pass of each band that is added next
+    Waiting* waiting;     // of each piece
     int missing;
 };
 
@@ -230,7 +229,8 @@ static vplResult failIncomplete(const vplAssembly* a)
                    a->missing, g->count, place.pass, place.firstRow, place.endRow - 1);
 }
 
-// Values of the picture and of its direct light alone, as vplRenderer_GetLayers has them.
+// Computes value k of a finished image from the sums of the passes and their total weight, by the formulas of
+// vplRenderer_GetLayers: addMean that of the picture, addDirect that of direct light alone.
 typedef float ResolveFcn(const vplAssembly* a, size_t k, double weight);
 
 static float addMean(const vplAssembly* a, size_t k, double weight)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Saves a render between two passes.
+// Saves the state of a render between two passes.
 #include "base/file.h"
 #include "base/hash.h"
 #include "reference/path_trace.h"
@@ -56,7 +56,7 @@ static vplStateHeader describe(const vplRenderer* r, const vplByteBuffer* text)
                         .side = (uint64_t)r->turn.side,
                         .edges = {(uint32_t)r->edgePixels, (uint32_t)r->edgePaths},
                         .tries = (uint64_t)r->edgeTries};
-    for (int i = 0; i < 1 + ((parts & VPL_STATE_DIRECT) != 0) && (parts & VPL_STATE_PATHS) != 0; i++) {
+    for (int i = 0; i < vplState_CountTracers(parts); i++) {
         vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
         h.samples = (uint32_t)vplPathTracer_GetSums(tracer).samples;
         h.rays[i] = (uint64_t)vplPathTracer_CountRays(tracer);

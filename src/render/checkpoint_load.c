@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Goes on with a render that was saved. Every size and value is checked.
+// Resumes a saved render. Every size and value of the file is checked.
 #include "base/file.h"
 #include "reference/path_trace.h"
 #include "render/replay.h"
@@ -194,7 +194,7 @@ static vplResult loadState(Loading* l)
     if (!l->stream.finite) {
         return vplFail(r->runner.run.context, VPL_PARSE_ERROR, "%s: has sums that are no numbers", l->path);
     }
-    for (int i = 0; i < 1 + ((h->parts & VPL_STATE_DIRECT) != 0) && (h->parts & VPL_STATE_PATHS) != 0; i++) {
+    for (int i = 0; i < vplState_CountTracers(h->parts); i++) {
         vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
         vplPathTracer_SetSamples(tracer, (int)h->samples);
         vplPathTracer_SetRays(tracer, (int64_t)h->rays[i]);

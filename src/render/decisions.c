@@ -45,8 +45,8 @@ static double rsmBytes(const vplPlan* p, int size)
     return vplReflectiveMapFaces(p) * 8 * size * size;
 }
 
-// Maps of more than 64 emitters take a quarter of the memory. Smaller maps lost nothing that the noise would show: 1,000 points,
-// 128^2 and 256^2 texels: relmse 0.014 and 0.009, energy 0.988 and 0.980, 300 and 875 MiB; 100 spots, 256^2 and 512^2 texels:
+// Maps of more than 64 emitters may take a quarter of the memory. Their error is within its noise: 1,000 points with 128^2 and 256^2
+// texels have relmse 0.014 and 0.009, energy 0.988 and 0.980, in 300 and 875 MiB; 100 spots with 256^2 and 512^2 texels have
 // relmse 0.022 and 0.023, energy 0.949 and 0.950 (bench/lamps_scene.sh).
 static double mostRsmBytes(const vplPlan* p)
 {
@@ -89,7 +89,7 @@ void vplDecidePipeline(vplPlan* p)
         if (ssvp || o->particles.placement == VPL_PLACEMENT_RSM) {
             vplDecide(p, "rsm-size",
                       o->shadow.rsmSize < usual
-                          ? "maps of all emitters together take 1 GiB at most, many a quarter of it"
+                          ? "maps of all emitters take at most 1 GiB, those of more than 64 a quarter of it"
                       : ssvp ? "direct light takes its shadows from it, too"
                              : "first hits need no more texels");
         }

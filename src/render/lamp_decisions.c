@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Decisions on direct light of triangles that emit: points on them, or triangles that a tree chooses for each pixel.
-// A point costs a seventh to a sixteenth of a choice, because the rays of neighbouring pixels go the same way (bench/lamps):
-//     1,000 quads of a hall: 64 choices 4.8 % error of a pixel, 0.10 s; a point or two on each quad 0.2 %, 0.16 s
-//     a sphere of 2,208 triangles: 64 choices 3.7 %, 0.54 s; 64 points 5.2 %, 0.03 s; 256 points 0.6 %, 0.12 s
+// Decides how emitting triangles light a pixel: all pixels share a set of samples on them, or a tree chooses triangles for each
+// pixel. A triangle of the tree costs 7 to 18 times as much as a shared sample, because shadow rays of neighbouring pixels to a
+// shared sample are coherent. Measured by bench/lamps (processor time, error of a pixel):
+//     1,000 quads in a hall: 64 triangles of the tree 0.10 s, 4.8 %; one or two samples on each quad 0.16 s, 0.2 %
+//     a sphere of 2,208 triangles: 64 of the tree 0.54 s, 3.7 %; 64 samples 0.03 s, 5.2 %; 256 samples 0.12 s, 0.6 %
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
 #include "lights/light_set.h"
@@ -11,11 +12,11 @@
 
 #include <math.h>
 
-// A mesh of more triangles that is compact has so many points.
+// Samples on compact meshes that have more emitting triangles than can each have a sample.
 enum { COMPACT_POINTS = 256 };
 
-// A mesh whose emitting area is at least this share of the surface of its box is compact: a sphere has 0.52, a square 0.5, a
-// torus that is ten times as wide as thick 0.4. Lamps that are one mesh but far from each other have less.
+// A mesh is compact if its emitting area is at least this share of the surface of its bounding box: 0.52 for a sphere, 0.5 for a
+// square, 0.4 for a torus ten times as wide as thick. Several lamps far apart in one mesh have a smaller share.
 static const double COMPACT_SHARE = 0.125;
 
 vplTreesWanted vplTreesOf(const vplPlan* p)
@@ -32,8 +33,8 @@ bool vplPixelsChooseTriangles(const vplPlan* p)
     return p->trianglesPerPoint > 0 && p->trianglesPerPoint == p->options.lights.areaLightSamples;
 }
 
-// The triangles from `first` on that emit and belong to its object: their area over the surface of their box. Returns the end
-// of the object's triangles.
+// Computes the area of an object's emitting triangles over the surface of their bounding box; `first` is the object's first
+// triangle. Returns the end of its triangles.
 static int shareOfBox(const vplGeometry* g, int first, double* shareOut)
 {
     vplVec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
@@ -67,7 +68,6 @@ static bool areCompact(const vplGeometry* g)
     return true;
 }
 
-// Faces of quads and boxes, and other triangles, that emit.
 static vplResult countFaces(const vplGeometry* g, int* facesOut)
 {
     vplEmission* emission;
@@ -77,8 +77,9 @@ static vplResult countFaces(const vplGeometry* g, int* facesOut)
     return VPL_SUCCESS;
 }
 
-// Pixels have points on all lamps where points are few enough; hits of rays choose triangles in all of these cases. A plan with
-// the samples that were decided decides the same again.
+// If many triangles emit, hits of rays always use the tree. Pixels use samples if one on each face is affordable or the meshes
+// are compact; otherwise they use the tree as well. The chosen number of samples is written into the options, and a replayed
+// plan makes the same decision from it.
 vplResult vplDecideTriangles(const vplRunner* r, vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];

@@ -14,7 +14,7 @@ typedef struct vplPieceHeader {
     vplPieceGrid grid;
     int index;
     bool mean;    // the picture is its first floats plus the mean of all passes
-    bool splits;  // each pass has its direct light, too, for layers
+    bool splits;  // each piece also has the direct light of its pass alone, for layers
     double share; // weight of the pass
 } vplPieceHeader;
 
@@ -26,7 +26,8 @@ typedef struct vplPiecePlace {
 
 vplPiecePlace vplPieceGrid_Place(const vplPieceGrid* grid, int index);
 
-// Arrays of `values` floats in a piece: of a mean's first pass, direct light and then the pass. What splits adds is the last.
+// Arrays of `values` floats in a piece: direct light if it is of the first pass of a mean, the pass or picture, and last the
+// direct light of the pass alone if the header says splits.
 int vplPiece_CountArrays(const vplPieceHeader* header);
 
 // Bytes of a whole piece.

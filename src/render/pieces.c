@@ -103,7 +103,7 @@ static vplResult tracePiece(vplRenderer* r, vplImage** imageOut)
     return vplResolvePaths(run, imageOut);
 }
 
-// Draws the piece: direct light and a pass of a mean, or all light. The images have the whole picture's size.
+// Draws a pass of a mean, and before the first one direct light; or all light at once. The images have the whole picture's size.
 static vplResult drawLight(vplRenderer* r, vplImage** images)
 {
     const vplPlan* p = r->plan;
@@ -123,11 +123,9 @@ static vplResult drawPiece(vplRenderer* r, const vplPieceHeader* h, vplImage* im
     const bool traces = r->plan->options.method == VPL_METHOD_PATH;
     vplImage** direct = &images[vplPiece_CountArrays(h) - 1];
     TRY(traces ? tracePiece(r, &images[0]) : drawLight(r, images));
-    if (traces && h->splits) {
-        TRY(vplImage_Create(r->runner.run.context, h->grid.width, h->grid.height, direct));
-        vplResolveDirectPaths(&r->runner.run, *direct);
-    }
-    return h->splits && !traces ? vplRenderer_DrawDirect(r, direct) : VPL_SUCCESS;
+    return !h->splits ? VPL_SUCCESS
+           : traces   ? vplResolveDirectPaths(&r->runner.run, direct)
+                      : vplRenderer_DrawDirect(r, direct);
 }
 
 vplResult vplRenderer_HashOptions(const vplRenderer* r, uint64_t* hashOut)

@@ -66,10 +66,11 @@ vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 // The least numbers of emitters and of triangles that emit from which points choose by a tree.
 vplTreesWanted vplTreesOf(const vplPlan* plan);
 
-// Decides how triangles that emit light pixels.
+// Decides whether emitting triangles light pixels by samples on them or by a tree.
 vplResult vplDecideTriangles(const vplRunner* runner, vplPlan* plan);
 
-// True if pixels choose triangles that emit; else points on them light pixels, also where hits of rays choose.
+// True if a tree chooses emitting triangles for each pixel. If false, samples on area lights light the pixels, even where a tree
+// chooses triangles for hits of rays.
 bool vplPixelsChooseTriangles(const vplPlan* plan);
 
 // The bytes of form factors of all pairs that this process holds, and those that it needs besides while it computes them.

@@ -98,10 +98,11 @@ uint64_t vplRenderer_HashScene(const vplRenderer* renderer);
 // The hash of all options of the plan, which pieces carry (pieces.c). VPL_OUT_OF_MEMORY.
 vplResult vplRenderer_HashOptions(const vplRenderer* renderer, uint64_t* hashOut);
 
-// True if layers need direct light alone of each pass. If it is the same in all passes, it is drawn only once, as the base.
+// True if layers need the direct light of each pass alone. False also if it is the same in all passes: then it is the base.
 bool vplPassesSplitLight(const vplPlan* plan);
 
-// Draws direct light alone, for layers; of several passes, what the pass adds to it. The pass itself must be drawn before.
+// Draws direct light alone, for layers. If there are several passes, it is the part that this pass adds. The pass must have been
+// drawn.
 vplResult vplRenderer_DrawDirect(vplRenderer* renderer, vplImage** imageOut);
 
 // Makes sums of passes, all 0.

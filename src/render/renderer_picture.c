@@ -78,11 +78,10 @@ static vplResult resolveDirect(vplRenderer* r, vplImage** imageOut)
     if (!r->plan->splitsLight) {
         return VPL_SUCCESS;
     }
-    TRY(vplImage_Create(r->runner.run.context, o->width, o->height, imageOut));
     if (r->plan->options.method == VPL_METHOD_PATH) {
-        vplResolveDirectPaths(&r->runner.run, *imageOut);
-        return VPL_SUCCESS;
+        return vplResolveDirectPaths(&r->runner.run, imageOut);
     }
+    TRY(vplImage_Create(r->runner.run.context, o->width, o->height, imageOut));
     for (size_t k = 0; k < vplValueCount(*imageOut); k++) {
         const float added = r->direct != NULL ? r->direct->pixels[k] : 0;
         (*imageOut)->pixels[k] = r->plan->progressive ? r->base->pixels[k] + added / (float)r->weight : added;

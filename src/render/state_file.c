@@ -53,7 +53,7 @@ uint32_t vplState_PartsOf(const vplPlan* p)
 
 void vplState_StreamSums(vplStream* s, vplRenderer* r, uint32_t parts)
 {
-    for (int i = 0; i < 1 + ((parts & VPL_STATE_DIRECT) != 0) && (parts & VPL_STATE_PATHS) != 0; i++) {
+    for (int i = 0; i < vplState_CountTracers(parts); i++) {
         const vplPathSums sums = vplPathTracer_GetSums(vplGetPathTracer(&r->runner.run, i > 0));
         vplStream_Doubles(s, sums.values, sums.count);
     }

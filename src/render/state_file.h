@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The file of a render that goes on another time, all words little-endian: the 8 letters VPLSTATE, a header, the options as
+// The file of a saved render, all words little-endian: the 8 letters VPLSTATE, a header, the options as
 // text, the sums that the picture is made from, and a checksum. Before the first pass of a plan that replaces another there
 // are no sums. checkpoint.c writes it, checkpoint_load.c reads it, by the same functions.
 #ifndef VPL_RENDER_STATE_FILE_H
@@ -42,6 +42,12 @@ size_t vplState_Size(const vplStateHeader* header);
 
 // The arrays of a plan's renderer after its first pass; 0: it has no state between passes.
 uint32_t vplState_PartsOf(const vplPlan* plan);
+
+// How many path tracers these arrays are of: one for the picture, and one for its direct light.
+static inline int vplState_CountTracers(uint32_t parts)
+{
+    return (parts & VPL_STATE_PATHS) != 0 ? 1 + ((parts & VPL_STATE_DIRECT) != 0) : 0;
+}
 
 // Writes or reads the arrays.
 void vplState_StreamSums(vplStream* s, vplRenderer* r, uint32_t parts);

@@ -78,10 +78,10 @@ static void tree(vplPathDef* def)
     def->emittersOfTree = def->trianglesOfTree = 1;
 }
 
-// As tree, but trees choose by power alone.
+// The trees of makeTreesByPower.
 static void byPower(vplPathDef* def)
 {
-    def->emittersOfTree = def->trianglesOfTree = 1;
+    tree(def);
 }
 
 static const Line LINES[] = {

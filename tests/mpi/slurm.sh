@@ -55,25 +55,24 @@ slurmctld -f "$SLURM_CONF"
 for node in n1 n2 n3 n4; do
     slurmd -f "$SLURM_CONF" -N $node
 done
-for second in $(seq 30); do
-    [ "$(sinfo -h -t idle -o %D)" = 4 ] && break
-    sleep 1
-done
-[ "$(sinfo -h -t idle -o %D)" = 4 ] || { echo "slurm: not tested, its daemons do not start here"; tail -n 5 "$scratch"/*.log; exit 0; }
+await() { # SECONDS COMMAND...: tries the command ten times a second until it succeeds; fails when the time is over
+    tries=$(($1 * 10))
+    shift
+    until "$@"; do
+        tries=$((tries - 1))
+        [ $tries -gt 0 ] || return 1
+        sleep 0.1
+    done
+}
+all_are_idle() { [ "$(sinfo -h -t idle -o %D)" = 4 ]; }
+await 30 all_are_idle || { echo "slurm: not tested, its daemons do not start here"; tail -n 5 "$scratch"/*.log; exit 0; }
 
 # ---- jobs. The scripts run in a folder where build/ has the programs.
 
 scripts=$PWD/examples/slurm scenes=$PWD/examples/scenes
 mkdir "$scratch/work" "$scratch/work/build" && ln -s "$PWD/$build/vpl" "$scratch/work/build/vpl" &&
     ln -s "$PWD/$build/vpl-mpi.mpich" "$scratch/work/build/vpl-mpi" && cd "$scratch/work" || exit 1
-state() { squeue -h -j "$1" -o %T 2>/dev/null; }
-ended() { # JOB [SECONDS]: waits for its end
-    for tenth in $(seq $((${2:-60} * 10))); do
-        [ -n "$(state "$1")" ] || return 0
-        sleep 0.1
-    done
-    return 1
-}
+has_state() { [ "$(squeue -h -j "$1" -o %T 2>/dev/null)" = "$2" ]; } # JOB STATE: empty if the job has ended
 submit() { sbatch --parsable --output="$scratch/work/log-%j" --cpus-per-task=1 "$@"; }
 
 options="$scenes/room-area.json --method path --spp 24 --size 96x240"
@@ -94,32 +93,22 @@ check A_job_of_four_nodes job_of_four
 # A job that ends too early: Slurm sends SIGTERM to the ranks, they keep what is finished, and the job goes on by itself.
 long="$scenes/room-area.json --method path --spp 160 --size 96x240"
 build/vpl render $long -o long.pfm --quiet
-pieces() { # FILE: waits for its first piece
-    for tenth in $(seq 300); do
-        [ "$(wc -c <"$1" 2>/dev/null || echo 0)" -gt 5000 ] && return 0
-        sleep 0.1
-    done
-    return 1
-}
+has_a_piece() { [ "$(wc -c <"$1" 2>/dev/null || echo 0)" -gt 5000 ]; }
 # goes_on JOB FILE: waits until the job is queued again, and starts it at once instead of after Slurm's two minutes.
 goes_on() {
-    for tenth in $(seq 600); do
-        [ "$(state "$1")" = PENDING ] && break
-        sleep 0.1
-    done
-    [ "$(state "$1")" = PENDING ] && [ ! -e "$2" ] && cp "$2.pieces" kept && scontrol update JobId="$1" StartTime=now &&
-        ended "$1" 120 && cmp long.pfm "$2" && cmp -n "$(wc -c <kept)" kept "$2.pieces"
+    await 60 has_state "$1" PENDING && [ ! -e "$2" ] && cp "$2.pieces" kept && scontrol update JobId="$1" StartTime=now &&
+        await 120 has_state "$1" "" && cmp long.pfm "$2" && cmp -n "$(wc -c <kept)" kept "$2.pieces"
 }
 
 out_of_time() {
-    job=$(submit "$scripts/render.sbatch" ${long%% *} late.pfm ${long#* } --quiet) && pieces late.pfm.pieces &&
+    job=$(submit "$scripts/render.sbatch" ${long%% *} late.pfm ${long#* } --quiet) && await 30 has_a_piece late.pfm.pieces &&
         scancel --signal=TERM "$job" && goes_on "$job" late.pfm
 }
 check A_job_out_of_time_goes_on out_of_time
 
 # A machine that is lost: the job is queued again, and goes on without it.
 lost_node() {
-    job=$(submit --nodes=3 "$scripts/render.sbatch" ${long%% *} lost.pfm ${long#* } --quiet) && pieces lost.pfm.pieces || return 1
+    job=$(submit --nodes=3 "$scripts/render.sbatch" ${long%% *} lost.pfm ${long#* } --quiet) && await 30 has_a_piece lost.pfm.pieces || return 1
     node=$(scontrol show hostnames "$(squeue -h -j "$job" -o %N)" | tail -n 1)
     scontrol update NodeName="$node" State=DOWN Reason=test && goes_on "$job" lost.pfm
 }

@@ -106,7 +106,7 @@ void vplDestroyEmitterTrees(void* result)
 
 // ---- area lights and the environment
 
-// Points on area lights; none where pixels choose triangles. Where many objects emit, each face has one.
+// Writes samples on area lights: none if a tree chooses triangles for pixels, and at least one on each face if many objects emit.
 static int samplePoints(const vplRun* run, const vplEmission* emission, vplShadeLight* out)
 {
     const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];

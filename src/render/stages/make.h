@@ -86,8 +86,8 @@ vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
 // The tracer of the picture, or of its direct light, which is NULL if the plan does not split light.
 struct vplPathTracer* vplGetPathTracer(const vplRun* run, bool direct);
 
-// The mean of their direct light, if the plan splits light. The image is black.
-void vplResolveDirectPaths(const vplRun* run, vplImage* image);
+// Makes a picture of the mean of their direct light; the plan must split light.
+vplResult vplResolveDirectPaths(const vplRun* run, vplImage** imageOut);
 
 // Points of a pixel whose mean albedo and normals are.
 int vplCountLayerSamples(const vplPlan* plan);

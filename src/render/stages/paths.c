@@ -108,12 +108,15 @@ vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut)
     return VPL_SUCCESS;
 }
 
-void vplResolveDirectPaths(const vplRun* run, vplImage* image)
+vplResult vplResolveDirectPaths(const vplRun* run, vplImage** imageOut)
 {
     const Paths* paths = run->results[VPL_STAGE_PATHS];
+    const vplOutputOptions* o = &run->plan->options.output;
     vplPathStats stats;
-    vplPathTracer_Resolve(paths->direct, image, &stats);
+    TRY(vplImage_Create(run->context, o->width, o->height, imageOut));
+    vplPathTracer_Resolve(paths->direct, *imageOut, &stats);
     run->stats->rays += stats.rays;
+    return VPL_SUCCESS;
 }
 
 vplPathTracer* vplGetPathTracer(const vplRun* run, bool direct)

@@ -26,7 +26,7 @@ typedef struct vplAreaLights {
     float minDistance; // metres
 } vplAreaLights;
 
-// The points of a stage's result that light hits of rays; where hits choose triangles, only the environment's.
+// The samples that light hits of rays: all of the stage's, or only those of the environment if a tree chooses triangles for hits.
 static inline vplAreaLights vplAreaLightsOfHits(const vplRun* run)
 {
     const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
