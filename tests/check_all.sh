@@ -25,8 +25,8 @@ check() {
 
 fails() {
     echo "not ok $1: first failures and the end of build/$1.log:"
-    grep -n -m 3 -B 2 -A 12 -E "ERROR: |WARNING: ThreadSanitizer|runtime error:|FAILED|^not ok|rror:" "build/$1.log"
-    tail -n 6 "build/$1.log"
+    grep -a -n -m 3 -B 2 -A 12 -E "ERROR: |WARNING: ThreadSanitizer|runtime error:|FAILED|^not ok|rror:" "build/$1.log"
+    tail -n 20 "build/$1.log"
     touch build/check-all-failed
 }
 

@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 static char lastMessage[1200];
 
@@ -22,6 +23,13 @@ const char* takeMessage(void)
     memcpy(taken, lastMessage, sizeof taken);
     lastMessage[0] = 0;
     return taken;
+}
+
+const char* temporaryName(const char* ending)
+{
+    static char name[64];
+    snprintf(name, sizeof name, "/tmp/vpl-test-%ld%s", (long)getpid(), ending);
+    return name;
 }
 
 // A thread pool like that of a host program: threads take tasks from a counter.

@@ -110,6 +110,10 @@ vplScene* openScene(vplContext* context, const char* path);
 // Calls vplRender; a failure fails the test with the library's message. statsOut may be NULL.
 vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut);
 
+// Names a file with this ending in /tmp that no other process uses: several builds are tested side by side. The
+// next call overwrites it.
+const char* temporaryName(const char* ending);
+
 // Computes the root-mean-square error of a picture over its mean, against two path-traced pictures of 256 paths per pixel. Their
 // noise is independent, so that it cancels.
 double errorAgainstPaths(const vplScene* scene, const vplImage* image);

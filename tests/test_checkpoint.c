@@ -8,13 +8,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static char statePath[64];
-
-// A file of its own for each process.
 static const char* stateFile(void)
 {
-    snprintf(statePath, sizeof statePath, "/tmp/vpl-state-%ld", (long)getpid());
-    return statePath;
+    return temporaryName(".state");
 }
 
 // Renders `passes` passes and saves them.

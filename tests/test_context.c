@@ -119,9 +119,9 @@ TEST(BytesAreTheCodesOfAPng, 1)
     vplWriteOptions options = vplDefaultWriteOptions();
     options.exposure = def.exposure;
     options.tonemap = def.tonemap;
-    assert_int_equal(vplImage_Write(image, "/tmp/vpl-codes.png", &options), VPL_SUCCESS);
-    assert_int_equal(vplImage_Read(context, "/tmp/vpl-codes.png", &read), VPL_SUCCESS);
-    remove("/tmp/vpl-codes.png");
+    assert_int_equal(vplImage_Write(image, temporaryName(".png"), &options), VPL_SUCCESS);
+    assert_int_equal(vplImage_Read(context, temporaryName(".png"), &read), VPL_SUCCESS);
+    remove(temporaryName(".png"));
     for (int i = 0; i < 24; i++) {
         const int want = i % 4 == 3 ? 255 : vplSrgb_Code(read->pixels[3 * (i / 4) + i % 4]);
         assert_int_equal(bytes[i], want);

@@ -111,16 +111,9 @@ static File build(Recipe r)
     return f;
 }
 
-static const char* temporaryName(void)
-{
-    static char name[64];
-    snprintf(name, sizeof name, "/tmp/vpl-test-%ld.exr", (long)getpid());
-    return name;
-}
-
 static vplResult readBytes(vplContext* context, const uint8_t* bytes, size_t size, vplImage** imageOut)
 {
-    const char* path = temporaryName();
+    const char* path = temporaryName(".exr");
     FILE* file = fopen(path, "wb");
     assert_true(file != NULL && fwrite(bytes, 1, size, file) == size);
     fclose(file);
@@ -146,9 +139,9 @@ TEST(WithoutOpenExrASentenceSaysSo, 1)
         assert_int_equal(read, VPL_INVALID_ARGUMENT);
         assert_non_null(strstr(takeMessage(), "no OpenEXR"));
         assert_int_equal(vplImage_Create(context, 2, 2, &image), VPL_SUCCESS);
-        assert_int_equal(vplImage_Write(image, temporaryName(), NULL), VPL_INVALID_ARGUMENT);
+        assert_int_equal(vplImage_Write(image, temporaryName(".exr"), NULL), VPL_INVALID_ARGUMENT);
         assert_non_null(strstr(takeMessage(), "no OpenEXR"));
-        assert_int_equal(access(temporaryName(), F_OK), -1);
+        assert_int_equal(access(temporaryName(".exr"), F_OK), -1);
     } else {
         assert_int_equal(read, VPL_SUCCESS);
         assert_non_null(strstr(vplImage_GetExtensions(), ".exr"));
@@ -170,10 +163,10 @@ TEST(ExrKeepsEveryBit, 1)
         image->pixels[0] = 1e-42f;
         image->pixels[1] = -3e38f;
         image->pixels[2] = -0.0f;
-        assert_int_equal(vplImage_Write(image, temporaryName(), NULL), VPL_SUCCESS);
-        assert_int_equal(vplImage_Read(context, temporaryName(), &back), VPL_SUCCESS);
+        assert_int_equal(vplImage_Write(image, temporaryName(".exr"), NULL), VPL_SUCCESS);
+        assert_int_equal(vplImage_Read(context, temporaryName(".exr"), &back), VPL_SUCCESS);
         assert_true(vplImage_Hash(image) == vplImage_Hash(back));
-        unlink(temporaryName());
+        unlink(temporaryName(".exr"));
         vplImage_Destroy(image);
         vplImage_Destroy(back);
     }
@@ -307,8 +300,8 @@ TEST(AnExrThatIsNotFiniteIsNotWritten, 1)
     vplImage* image;
     assert_int_equal(vplImage_Create(context, 8, 8, &image), VPL_SUCCESS);
     image->pixels[3 * (8 * 2 + 5) + 1] = NAN;
-    assert_int_equal(vplImage_Write(image, temporaryName(), NULL), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplImage_Write(image, temporaryName(".exr"), NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), hasExr() ? "pixel (5, 2) channel 1" : "no OpenEXR"));
-    assert_int_equal(access(temporaryName(), F_OK), -1);
+    assert_int_equal(access(temporaryName(".exr"), F_OK), -1);
     vplImage_Destroy(image);
 }

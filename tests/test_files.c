@@ -7,13 +7,6 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static const char* temporaryName(const char* extension)
-{
-    static char name[64];
-    snprintf(name, sizeof name, "/tmp/vpl-files-%ld%s", (long)getpid(), extension);
-    return name;
-}
-
 #ifndef _WIN32 // whose users may not make symbolic links
 TEST(ADanglingLinkIsNotReplaced, 1)
 {

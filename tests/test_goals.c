@@ -159,7 +159,10 @@ TEST(WordsOfQualityStandForErrorsAndTimes, 1)
     vplScene_Destroy(scene);
 }
 
-static const char SAVED[] = "/tmp/vpl-goals-state";
+static const char* savedFile(void)
+{
+    return temporaryName(".state");
+}
 
 // Saves a render after so many steps, or as many as it has.
 static void saveAfter(const vplScene* scene, const vplRenderOptions* o, int steps, bool* endedOut)
@@ -170,7 +173,7 @@ static void saveAfter(const vplScene* scene, const vplRenderOptions* o, int step
     for (int i = 0; i < steps && !*endedOut; i++) {
         assert_int_equal(vplRenderer_Step(r, endedOut), VPL_SUCCESS);
     }
-    assert_int_equal(vplRenderer_Save(r, SAVED), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Save(r, savedFile()), VPL_SUCCESS);
     vplRenderer_Destroy(r);
 }
 
@@ -180,7 +183,7 @@ static void finishSaved(const vplScene* scene, const vplRenderOptions* o, vplRen
     vplImage* image;
     bool done;
     assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Load(r, SAVED, &done), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Load(r, savedFile(), &done), VPL_SUCCESS);
     while (!done) {
         assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
     }
@@ -218,7 +221,7 @@ TEST(ARenderThatWasSavedEndsAtTheSamePass, 2)
         }
         vplScene_Destroy(scene);
     }
-    remove(SAVED);
+    remove(savedFile());
 }
 
 // Cancels at one call.
@@ -254,7 +257,7 @@ static bool stopAt(const vplScene* scene, vplRenderOptions o, int at, bool saves
             stops++;
             *midwayOut = *midwayOut || vplRenderer_GetPassCount(r) > steps;
             if (saves && vplRenderer_GetPassCount(r) > 0) {
-                assert_int_equal(vplRenderer_Save(r, SAVED), VPL_SUCCESS);
+                assert_int_equal(vplRenderer_Save(r, savedFile()), VPL_SUCCESS);
                 vplRenderer_Destroy(r);
                 finishSaved(scene, &o, stats);
                 return true;
@@ -288,7 +291,7 @@ TEST(ARenderThatWasCancelledAnywhereEndsTheSame, 1)
         }
         assert_true(midway == (i == 0)); // paths are their own truth
     }
-    remove(SAVED);
+    remove(savedFile());
     vplScene_Destroy(scene);
 }
 

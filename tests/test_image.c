@@ -181,13 +181,6 @@ TEST(ReinhardIgnoresPixelsThatAreNotFinite, 1)
     }
 }
 
-static const char* temporaryName(const char* extension)
-{
-    static char name[128];
-    snprintf(name, sizeof name, "/tmp/vpl-test-%ld%s", (long)getpid(), extension);
-    return name;
-}
-
 TEST(PfmKeepsEveryBit, 1)
 {
     vplImage *image = makeImage(context, 13, 7), *back;

@@ -318,13 +318,6 @@ TEST(OnlyAlbedoAndNormalsAreMeansOverAPixel, 2)
 
 // ---- files
 
-static const char* temporaryName(void)
-{
-    static char name[64];
-    snprintf(name, sizeof name, "/tmp/vpl-layers-%ld.exr", (long)getpid());
-    return name;
-}
-
 static vplImage* randomImage(vplContext* context, uint64_t seed, bool whole)
 {
     vplImage* image;
@@ -365,11 +358,12 @@ TEST(LayersAreReadBackWithEveryBit, 1)
         {.name = "a.normal", .kind = VPL_LAYER_VECTOR, .image = images[2]},
         {.name = "object.id", .kind = VPL_LAYER_INDEX, .image = images[4], .names = names, .nameCount = 3}};
     const bool exr = vplImage_CanWrite("a.exr");
-    assert_int_equal(vplImage_WriteLayers(layers, 5, temporaryName()),
+    assert_int_equal(vplImage_WriteLayers(layers, 5, temporaryName(".exr")),
                      exr ? VPL_SUCCESS : VPL_INVALID_ARGUMENT);
     for (int i = 0; i < 5 && exr; i++) {
         vplImage* back;
-        assert_int_equal(vplImage_ReadLayer(context, temporaryName(), layers[i].name, &back), VPL_SUCCESS);
+        assert_int_equal(vplImage_ReadLayer(context, temporaryName(".exr"), layers[i].name, &back),
+                         VPL_SUCCESS);
         const bool single = layers[i].kind >= VPL_LAYER_NUMBER;
         for (size_t k = 0; k < countValues(back); k++) {
             assert_true(back->pixels[k] == layers[i].image->pixels[single ? k - k % 3 : k]);
@@ -383,13 +377,14 @@ TEST(LayersAreReadBackWithEveryBit, 1)
         static const char attribute[] =
             "object.id.names\0stringvector\0\24\0\0\0\3\0\0\0one\0\0\0\0\5\0\0\0three";
         vplImage* back = NULL;
-        assert_true(hasBytes(temporaryName(), first, sizeof first - 1));
-        assert_true(hasBytes(temporaryName(), second, sizeof second - 1));
-        assert_true(hasBytes(temporaryName(), last, sizeof last - 1));
-        assert_true(hasBytes(temporaryName(), attribute, sizeof attribute - 1));
-        assert_int_equal(vplImage_ReadLayer(context, temporaryName(), "normal", &back), VPL_PARSE_ERROR);
+        assert_true(hasBytes(temporaryName(".exr"), first, sizeof first - 1));
+        assert_true(hasBytes(temporaryName(".exr"), second, sizeof second - 1));
+        assert_true(hasBytes(temporaryName(".exr"), last, sizeof last - 1));
+        assert_true(hasBytes(temporaryName(".exr"), attribute, sizeof attribute - 1));
+        assert_int_equal(vplImage_ReadLayer(context, temporaryName(".exr"), "normal", &back),
+                         VPL_PARSE_ERROR);
         assert_non_null(strstr(takeMessage(), "no layer of that name"));
-        unlink(temporaryName());
+        unlink(temporaryName(".exr"));
     }
     for (int i = 0; i < 5; i++) {
         vplImage_Destroy(images[i]);
@@ -416,7 +411,7 @@ TEST(LayersThatNoFileCanHoldAreRefused, 1)
         {{"", VPL_LAYER_COLOUR, a, NULL, 0}, NULL, "EXR picture"}}; // the channels of the first
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const vplLayer layers[] = {{.name = "", .image = a}, cases[i].layer};
-        const char* path = cases[i].path != NULL ? cases[i].path : temporaryName();
+        const char* path = cases[i].path != NULL ? cases[i].path : temporaryName(".exr");
         assert_int_equal(vplImage_WriteLayers(layers, 2, path), VPL_INVALID_ARGUMENT);
         const char* message = takeMessage();
         if (strstr(message, cases[i].message) == NULL) {

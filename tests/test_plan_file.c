@@ -4,12 +4,9 @@
 
 #include <unistd.h>
 
-static char planPath[64];
-
 static const char* planFile(void)
 {
-    snprintf(planPath, sizeof planPath, "/tmp/vpl-plan-%ld", (long)getpid());
-    return planPath;
+    return temporaryName(".plan");
 }
 
 // Every method, and what ends a render by time or error.

@@ -107,8 +107,7 @@ TEST(ABakeIsCancelledAtEveryCall, 1)
 {
     vplScene* scene = openScene(context, "tests/data/corner-path.json");
     vplRenderOptions options = vplDefaultRenderOptions();
-    char path[64];
-    snprintf(path, sizeof path, "/tmp/vpl-bake-%ld.ply", (long)getpid());
+    const char* path = temporaryName(".ply");
     assert_int_equal(vplRenderOptions_SetAll(&options, "--method radiosity --patches 16"), VPL_SUCCESS);
     const size_t bytes = vplContext_GetBytes(context);
     vplResult result = VPL_CANCELLED;

@@ -176,7 +176,7 @@ TEST(EncodedPngIsTheFileThatWouldBeWritten, 1)
     }
     uint8_t* bytes = NULL;
     size_t size = 0;
-    const char* path = "/tmp/vpl-test-encode.png";
+    const char* path = temporaryName(".png");
     assert_int_equal(vplImage_Encode(image, ".png", NULL, &bytes, &size), VPL_SUCCESS);
     assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
     static uint8_t file[4096];
