@@ -115,6 +115,78 @@ TEST(EditedScenesHaveTheBitsOfDeclaredOnes_Direct, 2)
     assertEditsGiveTheBitsOfADeclaration(context, VPL_METHOD_DIRECT);
 }
 
+// ---- textures, cut-outs and environments
+
+// Steps of a scene with a textured floor, two leaves cut out by a texture and a pane; all change surfaces.
+static void editPainted(vplScene* scene, int step)
+{
+    enum { WHITE, TILES, RED, LEAVES, PANE };
+    vplMaterialDef pane = *vplScene_GetMaterial(scene, PANE), tiles = *vplScene_GetMaterial(scene, TILES);
+    vplEnvironmentDef sky = vplDefaultEnvironmentDef();
+    const int last = vplScene_GetObjectCount(scene) - 1; // the pane
+    vplMat4 transform = vplScene_GetObject(scene, last)->transform;
+    switch (step) {
+    case 0:
+        transform.m[12] -= 0.4f;
+        assert_int_equal(vplScene_SetTransform(scene, last, &transform), VPL_SUCCESS);
+        break;
+    case 1:
+    case 2: // solid
+        pane.opacity = step == 1 ? 0.6f : 1;
+        assert_int_equal(vplScene_SetMaterial(scene, PANE, &pane), VPL_SUCCESS);
+        break;
+    case 3:
+    case 4: // without its texture
+        tiles.textureScale[0] *= 3;
+        tiles.textureRotation = 0.5;
+        tiles.texture = step == 3 ? tiles.texture : -1;
+        assert_int_equal(vplScene_SetMaterial(scene, TILES, &tiles), VPL_SUCCESS);
+        break;
+    case 5:
+    case 6:
+        sky.type = VPL_ENVIRONMENT_CONSTANT;
+        sky.radiance.r = (float)step;
+        assert_int_equal(vplScene_SetEnvironment(scene, &sky), VPL_SUCCESS);
+        break;
+    case 7: // no texture and no cut-out is left
+        for (int i = 0; i <= last; i++) {
+            if (vplScene_GetObject(scene, i)->material == LEAVES) {
+                assert_int_equal(vplScene_SetObjectMaterial(scene, i, RED), VPL_SUCCESS);
+            }
+        }
+        break;
+    default: // a material is added
+        tiles.name = NULL;
+        tiles.diffuse.b = 0.9f;
+        tiles.opacity = 0.7f;
+        assert_int_equal(vplScene_AddMaterial(scene, &tiles, NULL), VPL_SUCCESS);
+        assert_int_equal(vplScene_SetObjectMaterial(scene, last, PANE + 1), VPL_SUCCESS);
+    }
+}
+
+TEST(EditedScenesHaveTheBitsOfDeclaredOnes_Painted, 2, SLOW)
+{
+    static const vplMethod methods[] = {VPL_METHOD_KELLER, VPL_METHOD_INSTANT_RADIOSITY,
+                                        VPL_METHOD_PATH,   VPL_METHOD_DIRECT,
+                                        VPL_METHOD_SSVP,   VPL_METHOD_RADIOSITY};
+    for (int m = 0; m < 6; m++) {
+        vplScene* scene = openScene(context, "examples/scenes/cut-outs.json");
+        vplHistory* history;
+        assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
+        uint64_t before = hashOf(scene, methods[m], history, NULL);
+        for (int step = 0; step < 9; step++) {
+            editPainted(scene, step);
+            const uint64_t edited = hashOf(scene, methods[m], history, NULL);
+            assert_true(edited == hashOf(scene, methods[m], NULL, NULL) && edited != before);
+            before = edited;
+        }
+        vplHistory_Destroy(history);
+        vplScene_Destroy(scene);
+    }
+}
+
+// ---- what is made anew
+
 // Frames of SSVP and radiosity go on from the last by design; after a change of surfaces they begin anew.
 TEST(MethodsThatGoOnBeginAnewWhereSurfacesChange, 2)
 {

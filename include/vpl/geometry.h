@@ -163,10 +163,12 @@ vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geome
 // rays are being cast. On VPL_OUT_OF_MEMORY the geometry stays as it was.
 vplResult vplGeometry_BuildRayTree(vplGeometry* geometry);
 
-// Makes the geometry that of the scene as it is now, after vplScene_SetTransform, SetMaterial and SetObjectMaterial: objects
-// that were moved are transformed anew, and if one was, the ray tree is built anew, if there is one. The result has the
-// bits of a new geometry. vplGeometry_CanUpdate is false, and the geometry must be made anew, where things were added, and
-// where textures, colours of vertices or an environment are part of it. After a failure it can only be destroyed.
+// Makes the geometry that of the scene as it is now, after vplScene_SetTransform, SetMaterial, SetObjectMaterial and
+// SetEnvironment, and after materials and textures were added. Objects that were moved, or whose materials were changed, are
+// made anew, and so is the environment if it was set. The ray tree is refitted if objects were moved; it is built anew if
+// rays would cost more than 1.2 times what they cost when it was built. The result has the bits of a new geometry, but for
+// the tree, which changes no hit. vplGeometry_CanUpdate is false, and the geometry must be made anew, where objects were
+// added. After a failure it can only be destroyed.
 bool vplGeometry_CanUpdate(const vplGeometry* geometry, const vplScene* scene);
 vplResult vplGeometry_Update(vplGeometry* geometry, const vplScene* scene);
 

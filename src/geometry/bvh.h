@@ -5,6 +5,7 @@
 #ifndef VPL_GEOMETRY_BVH_H
 #define VPL_GEOMETRY_BVH_H
 
+#include "geometry/box.h"
 #include "math/vec.h"
 
 #include <vpl/geometry.h>
@@ -44,6 +45,7 @@ typedef struct vplBvh {
     vplTriangleBlock* blocks;
     vplBlockMarks* marks; // per block; NULL: none has any
     int nodeCount, blockCount;
+    double cost;            // of a ray, relative, when it was built
     struct vplArena* arena; // owns the arrays
 } vplBvh;
 
@@ -51,6 +53,18 @@ typedef struct vplBvh {
 // them. Up to `bruteBlocks` blocks (usually VPL_BRUTE_BLOCKS) it has no nodes.
 vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut);
 void vplBvh_Destroy(vplBvh* bvh);
+
+// Moves the triangles of objects that were moved, and the boxes around them; changes[i] has VPL_OBJECT_MOVED if object i was.
+// Triangles stay in their blocks. Returns false if the tree must be built anew instead: other triangles can be hit than
+// before, or rays would cost more than 1.2 times what they cost when it was built. All workers.
+bool vplBvh_Refit(vplBvh* bvh, const vplGeometry* geometry, const uint8_t* changes);
+
+// The expected cost of a ray, by the surface area heuristic: sums the surfaces of the boxes of nodes and blocks, in square
+// metres.
+double vplBvh_Cost(const vplBvh* bvh);
+
+// The box of a triangle, and its area in high[3].
+vplBox vplBoundItem(const vplGeometry* geometry, int triangle);
 
 // True for a triangle with an area; rays never hit one that has none.
 static inline bool vplCanBeHit(const vplGeometry* g, int triangle)

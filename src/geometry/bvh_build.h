@@ -5,7 +5,6 @@
 #define VPL_GEOMETRY_BVH_BUILD_H
 
 #include "base/arena.h"
-#include "geometry/box.h"
 #include "geometry/bvh.h"
 
 enum {

@@ -208,6 +208,7 @@ vplResult vplCollapse(const vplBvhBuilder* builder, int root, vplBvh* bvh)
     bvh->nodeCount = bvh->blockCount = 0;
     addChild(&c, root, true);
     fillAllBlocks(&c);
+    bvh->cost = vplBvh_Cost(bvh);
     return VPL_SUCCESS;
 }
 

@@ -32,7 +32,7 @@ typedef struct Collection {
     vplBuildRange* ranges; // by chunk of triangles; items of a chunk begin at the index of its first triangle
 } Collection;
 
-static vplBox boundItem(const vplGeometry* g, int triangle)
+vplBox vplBoundItem(const vplGeometry* g, int triangle)
 {
     const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
     vplFour corner[3];
@@ -54,7 +54,7 @@ static void collectChunk(void* data, int chunk, int worker)
     int count = 0;
     for (int i = first; i < g->triangleCount && i < first + VPL_BUILD_CHUNK; i++) {
         if (vplIsSolid(g, i)) {
-            c->builder->items[first + count] = boundItem(g, i);
+            c->builder->items[first + count] = vplBoundItem(g, i);
             c->builder->ids[first + count++] = i;
         }
     }

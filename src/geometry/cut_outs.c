@@ -7,6 +7,7 @@
 
 #include "base/arena.h"
 #include "base/rng.h"
+#include "geometry/object_build.h"
 #include "geometry/paint_data.h"
 #include "geometry/trace.h"
 #include "geometry/triangle.h"
@@ -171,8 +172,14 @@ void vplCutOuts_Veil(const vplGeometry* g, const vplRayPacket* rays, float tMax,
 
 // ---- building
 
-// Builds the tree of the triangles that `solid`, the inverse of the mask, leaves out.
-static vplResult buildTree(const vplGeometry* g, const uint8_t* is, vplBvh** treeOut)
+// The geometry of cut-outs alone: `solid`, the inverse of the mask, leaves the others out.
+typedef struct Inverse {
+    vplGeometry geometry;
+    vplCutOuts others;
+    uint8_t* solid;
+} Inverse;
+
+static vplResult invert(const vplGeometry* g, const uint8_t* is, Inverse* inverseOut)
 {
     uint8_t* solid = vplAlloc(g->context, (size_t)g->triangleCount, 1);
     if (solid == NULL) {
@@ -181,12 +188,29 @@ static vplResult buildTree(const vplGeometry* g, const uint8_t* is, vplBvh** tre
     for (int i = 0; i < g->triangleCount; i++) {
         solid[i] = !is[i];
     }
-    const vplCutOuts others = {.is = solid};
-    vplGeometry inverse = *g;
-    inverse.cutOuts = &others;
-    const vplResult result = vplBvh_Create(&inverse, VPL_BRUTE_BLOCKS, treeOut);
-    vplFree(g->context, solid);
+    *inverseOut = (Inverse){.geometry = *g, .others = {.is = solid}, .solid = solid};
+    inverseOut->geometry.cutOuts = &inverseOut->others;
+    return VPL_SUCCESS;
+}
+
+static vplResult buildTree(const vplGeometry* g, const uint8_t* is, vplBvh** treeOut)
+{
+    Inverse inverse;
+    TRY(invert(g, is, &inverse));
+    const vplResult result = vplBvh_Create(&inverse.geometry, VPL_BRUTE_BLOCKS, treeOut);
+    vplFree(g->context, inverse.solid);
     return result;
+}
+
+// Those of all triangles, where cut-outs have no area.
+static void fillIndices(const vplGeometry* g, const uint8_t* is, uint32_t* indices)
+{
+    memcpy(indices, g->indices, 3 * (size_t)g->triangleCount * sizeof *indices);
+    for (size_t i = 0; i < (size_t)g->triangleCount; i++) {
+        if (is[i]) {
+            indices[3 * i + 1] = indices[3 * i + 2] = indices[3 * i];
+        }
+    }
 }
 
 vplResult vplBuildCutOuts(vplGeometry* g)
@@ -199,19 +223,62 @@ vplResult vplBuildCutOuts(vplGeometry* g)
         return VPL_SUCCESS;
     }
     const size_t count = (size_t)g->triangleCount;
-    vplCutOuts* c = vplArena_AllocZero(g->arena, 1, sizeof *c);
-    uint8_t* is = vplArena_Alloc(g->arena, count, 1);
-    uint32_t* indices = vplArena_Copy(g->arena, g->indices, 3 * count, sizeof *indices);
-    TRY(vplArena_Check(g->arena));
-    for (size_t i = 0; i < count; i++) {
-        is[i] = vplIsCutOut(&g->materials[g->triangleMaterials[i]]);
-        if (is[i]) {
-            indices[3 * i + 1] = indices[3 * i + 2] = indices[3 * i];
+    vplArena* arena = vplArena_Create(g->context);
+    vplCutOuts* c = vplArena_AllocZero(arena, 1, sizeof *c);
+    uint8_t* is = vplArena_Alloc(arena, count, 1);
+    uint32_t* indices = vplArena_Alloc(arena, 3 * count, sizeof *indices);
+    vplBvh* tree = NULL;
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        for (size_t i = 0; i < count; i++) {
+            is[i] = vplIsCutOut(&g->materials[g->triangleMaterials[i]]);
+        }
+        fillIndices(g, is, indices);
+        result = buildTree(g, is, &tree);
+        *c = (vplCutOuts){is, indices, tree, arena};
+    }
+    return vplArena_Deliver(arena, result, c, &g->cutOuts);
+}
+
+void vplCutOuts_Destroy(const vplCutOuts* cutOuts)
+{
+    if (cutOuts != NULL) {
+        vplBvh_Destroy(cutOuts->tree);
+        vplArena_Destroy(cutOuts->arena);
+    }
+}
+
+// ---- updates
+
+static vplResult refit(const vplGeometry* g, const uint8_t* changes, bool* goodOut)
+{
+    Inverse inverse;
+    TRY(invert(g, g->cutOuts->is, &inverse));
+    *goodOut = vplBvh_Refit(g->cutOuts->tree, &inverse.geometry, changes);
+    vplFree(g->context, inverse.solid);
+    return VPL_SUCCESS;
+}
+
+vplResult vplUpdateCutOuts(vplGeometry* g, const uint8_t* changes, bool* solidOut)
+{
+    const vplCutOuts* c = g->cutOuts;
+    bool same = true, moved = false;
+    for (int i = 0; i < g->triangleCount; i++) {
+        const bool is = vplIsCutOut(&g->materials[g->triangleMaterials[i]]);
+        same = same && is == (c != NULL && c->is[i]);
+        moved = moved || (is && (changes[g->owners[i]] & VPL_OBJECT_MOVED) != 0);
+    }
+    *solidOut = !same;
+    if (same && c != NULL) {
+        fillIndices(g, c->is, (uint32_t*)c->indices);
+        if (moved) {
+            TRY(refit(g, changes, &same));
         }
     }
-    vplBvh* tree;
-    TRY(buildTree(g, is, &tree));
-    *c = (vplCutOuts){is, indices, tree};
-    g->cutOuts = c;
-    return VPL_SUCCESS;
+    if (same) {
+        return VPL_SUCCESS;
+    }
+    vplCutOuts_Destroy(c);
+    g->cutOuts = NULL;
+    return vplBuildCutOuts(g);
 }

@@ -11,6 +11,7 @@ typedef struct vplCutOuts {
     const uint8_t* is;       // per triangle: it is a cut-out
     const uint32_t* indices; // of all triangles, those of cut-outs without area: what the rasterizer draws
     vplBvh* tree;            // of the cut-outs only
+    struct vplArena* arena;  // owns the arrays
 } vplCutOuts;
 
 // True for a material that lets light through somewhere.
@@ -54,5 +55,12 @@ void vplCutOuts_Veil(const vplGeometry* geometry, const vplRayPacket* rays, floa
 // Sets geometry->cutOuts if the scene shows materials with an opacity. The geometry must have its triangles and paint.
 // VPL_OUT_OF_MEMORY.
 vplResult vplBuildCutOuts(vplGeometry* geometry);
+
+// Makes geometry->cutOuts that of the geometry as it is now, after the given changes of its objects. Stores whether other
+// triangles are solid than before. VPL_OUT_OF_MEMORY.
+vplResult vplUpdateCutOuts(vplGeometry* geometry, const uint8_t* changes, bool* solidOut);
+
+// NULL is allowed.
+void vplCutOuts_Destroy(const vplCutOuts* cutOuts);
 
 #endif

@@ -8,6 +8,7 @@
 #include <vpl/scenetools.h>
 
 #include "base/arena.h"
+#include "geometry/object_build.h"
 #include "geometry/emission.h"
 #include "math/scalar.h"
 #include "math/vec.h"
@@ -198,6 +199,18 @@ static vplResult fill(vplContext* context, vplEnvironment* e, const vplEnvironme
     return VPL_SUCCESS;
 }
 
+// An environment with what identifies the def that it was made of.
+typedef struct Stamped {
+    vplEnvironment environment;
+    uint64_t stamp; // vplScene.environmentStamp
+} Stamped;
+
+bool vplEnvironment_IsOf(const vplEnvironment* e, const vplScene* scene)
+{
+    return e != NULL ? ((const Stamped*)e)->stamp == scene->environmentStamp
+                     : scene->environment.type == VPL_ENVIRONMENT_NONE;
+}
+
 vplResult vplEnvironment_Create(const vplScene* scene, vplEnvironment** environmentOut)
 {
     REQUIRE(vplScene_GetContext(scene), scene, environmentOut);
@@ -207,9 +220,11 @@ vplResult vplEnvironment_Create(const vplScene* scene, vplEnvironment** environm
         return VPL_SUCCESS;
     }
     vplArena* arena = vplArena_Create(vplScene_GetContext(scene));
-    vplEnvironment* e = vplArena_AllocZero(arena, 1, sizeof *e);
+    Stamped* stamped = vplArena_AllocZero(arena, 1, sizeof *stamped);
+    vplEnvironment* e = &stamped->environment;
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
+        stamped->stamp = scene->environmentStamp;
         const bool constant = def->type == VPL_ENVIRONMENT_CONSTANT;
         e->arena = arena;
         e->width = constant ? 1 : def->width;

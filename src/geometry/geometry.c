@@ -6,6 +6,7 @@
 #include "geometry/formula.h"
 #include "geometry/object_build.h"
 #include "geometry/paint.h"
+#include "geometry/paint_data.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 
@@ -59,7 +60,7 @@ static vplResult allocate(const vplScene* scene, vplGeometry* g, vplGeometryBuil
     return vplArena_Check(g->arena);
 }
 
-static void fillMaterials(const vplGeometry* g, const vplGeometryBuilder* b)
+void vplFillMaterials(const vplGeometry* g, const vplGeometryBuilder* b)
 {
     for (int i = 0; i < g->materialCount; i++) {
         b->materials[i] = b->scene->materials[i];
@@ -67,16 +68,22 @@ static void fillMaterials(const vplGeometry* g, const vplGeometryBuilder* b)
     }
 }
 
-// Fills vertices and triangles of an object, whose placement and counts are known.
-static void finishObject(vplGeometry* g, const vplGeometryBuilder* b, int index)
+void vplFinishObject(const vplGeometryBuilder* b, int index)
 {
     vplGeometryObject* object = &b->objects[index];
     const vplMeshDef shape = vplShapeOf(b->scene, &b->scene->objects[index]);
     vplBuildObject(b, index);
     object->byFormula =
         !isCutOut(b->scene, &b->scene->objects[index]) && vplNeedsFormula(object, &shape, b->positions);
-    if (object->byFormula) {
-        b->formulaObjects[g->formulaCount++] = index;
+}
+
+void vplListFormulaObjects(vplGeometry* g, const vplGeometryBuilder* b)
+{
+    g->formulaCount = 0;
+    for (int i = 0; i < g->objectCount; i++) {
+        if (g->objects[i].byFormula) {
+            b->formulaObjects[g->formulaCount++] = i;
+        }
     }
 }
 
@@ -96,16 +103,16 @@ static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
                                       .firstTriangle = triangle,
                                       .triangleCount = shape.triangleCount};
         TRY(vplPlacement_Create(g->context, &def->transform, &object->placement));
-        finishObject(g, b, i);
+        vplFinishObject(b, i);
         vertex += object->vertexCount;
         triangle += object->triangleCount;
     }
-    fillMaterials(g, b);
+    vplListFormulaObjects(g, b);
+    vplFillMaterials(g, b);
     return VPL_SUCCESS;
 }
 
-// Finds bounds, area, mean reflectance and what emits.
-static void summarise(vplGeometry* g)
+void vplSummarise(vplGeometry* g)
 {
     for (int i = 0; i < g->vertexCount; i++) {
         const vplVec3 p = g->positions[i], low = i > 0 ? g->boundsMin : p, high = i > 0 ? g->boundsMax : p;
@@ -155,11 +162,20 @@ static vplResult build(const vplScene* scene, vplGeometry* g)
     TRY(allocate(scene, g, &builder));
     TRY(fill(g, &builder));
     TRY(vplBuildPaint(scene, g, builder.objects));
-    summarise(g);
+    vplSummarise(g);
     TRY(vplMarkCoplanar(g, builder.objects));
-    TRY(vplBuildCutOuts(g)); // last: its tree is not in the arena
+    TRY(vplBuildCutOuts(g));
     warnOfDistance(g);
     return vplEnvironment_Create(scene, &g->environment);
+}
+
+// Frees what is not in the arena.
+static void release(const vplGeometry* g)
+{
+    vplBvh_Destroy(g->rayTree);
+    vplPaint_Destroy(g->paint);
+    vplEnvironment_Destroy(g->environment);
+    vplCutOuts_Destroy(g->cutOuts);
 }
 
 vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geometryOut)
@@ -173,71 +189,10 @@ vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geome
         g->arena = arena;
         result = build(scene, g);
         if (result != VPL_SUCCESS) {
-            vplReleasePaint(g);
+            release(g);
         }
     }
     return vplArena_Deliver(arena, result, g, geometryOut);
-}
-
-// ---- updates
-
-// The arrays of a finished geometry, which belong to it and are filled again.
-static vplGeometryBuilder reopen(const vplGeometry* g, const vplScene* scene)
-{
-    return (vplGeometryBuilder){.scene = scene,
-                                .objects = (vplGeometryObject*)g->objects,
-                                .positions = (vplVec3*)g->positions,
-                                .shadingNormals = (vplVec3*)g->shadingNormals,
-                                .indices = (uint32_t*)g->indices,
-                                .normals = (vplVec3*)g->normals,
-                                .owners = (int*)g->owners,
-                                .triangleMaterials = (int*)g->triangleMaterials,
-                                .formulaObjects = (int*)g->formulaObjects,
-                                .materials = (vplMaterialDef*)g->materials};
-}
-
-bool vplGeometry_CanUpdate(const vplGeometry* g, const vplScene* scene)
-{
-    if (g == NULL || scene == NULL) {
-        return false;
-    }
-    bool same = g->scene == scene->identity && g->objectCount == scene->objectCount &&
-                g->materialCount == scene->materialCount && g->paint == NULL && scene->textureCount == 0 &&
-                g->environment == NULL && scene->environment.type == VPL_ENVIRONMENT_NONE;
-    for (int i = 0; i < scene->meshCount && same; i++) {
-        same = scene->meshes[i].colors == NULL;
-    }
-    same = same && g->cutOuts == NULL;
-    for (int i = 0; i < scene->materialCount && same; i++) {
-        same = !vplIsCutOut(&scene->materials[i]);
-    }
-    return same && memcmp(g->origin, scene->origin, sizeof g->origin) == 0;
-}
-
-vplResult vplGeometry_Update(vplGeometry* geometry, const vplScene* scene)
-{
-    REQUIRE(CONTEXT_OF(geometry) ?: vplScene_GetContext(scene), geometry, scene);
-    const vplGeometryBuilder b = reopen(geometry, scene);
-    bool moved = false;
-    geometry->formulaCount = 0;
-    fillMaterials(geometry, &b);
-    for (int i = 0; i < geometry->objectCount; i++) {
-        const vplObjectDef* def = &scene->objects[i];
-        const vplPlacement before = b.objects[i].placement;
-        TRY(vplPlacement_Create(geometry->context, &def->transform, &b.objects[i].placement));
-        moved = moved || memcmp(&before, &b.objects[i].placement, sizeof before) != 0;
-        b.objects[i].material = def->material;
-        b.objects[i].coplanar = false;
-        finishObject(geometry, &b, i);
-    }
-    summarise(geometry);
-    TRY(vplMarkCoplanar(geometry, b.objects));
-    if (moved && geometry->rayTree != NULL) {
-        vplBvh_Destroy(geometry->rayTree);
-        geometry->rayTree = NULL;
-        return vplGeometry_BuildRayTree(geometry);
-    }
-    return VPL_SUCCESS;
 }
 
 vplResult vplGeometry_BuildRayTree(vplGeometry* geometry)
@@ -264,10 +219,7 @@ vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
 void vplGeometry_Destroy(vplGeometry* geometry)
 {
     if (geometry != NULL) {
-        vplBvh_Destroy(geometry->rayTree);
-        vplReleasePaint(geometry);
-        vplEnvironment_Destroy(geometry->environment);
-        vplBvh_Destroy(geometry->cutOuts != NULL ? geometry->cutOuts->tree : NULL);
+        release(geometry);
         vplArena_Destroy(geometry->arena);
     }
 }

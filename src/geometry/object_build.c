@@ -131,6 +131,7 @@ static void fillTriangles(const vplGeometryBuilder* b, const vplMeshDef* shape, 
         b->triangleMaterials[at] = material;
         b->normals[at] = normalOf(object, i, &corners);
     }
+    object->reflectance = (vplRgb){0, 0, 0};
     if (area > 0) {
         object->reflectance =
             (vplRgb){(float)(sums[0] / area), (float)(sums[1] / area), (float)(sums[2] / area)};

@@ -26,12 +26,37 @@ vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def);
 // Fills the vertices and triangles of object `index`, whose placement, counts and first indices are set.
 void vplBuildObject(const vplGeometryBuilder* builder, int index);
 
+// The same, and decides whether rays test the object by formula.
+void vplFinishObject(const vplGeometryBuilder* builder, int index);
+
+// Fills geometry->formulaObjects from the objects.
+void vplListFormulaObjects(vplGeometry* geometry, const vplGeometryBuilder* builder);
+
+// Copies the materials of the scene.
+void vplFillMaterials(const vplGeometry* geometry, const vplGeometryBuilder* builder);
+
+// Finds bounds, area, mean reflectance and what emits.
+void vplSummarise(vplGeometry* geometry);
+
 // Sets geometry->paint, and the mean reflectances of `objects`, if the scene shows textures or colours of
 // vertices. VPL_OUT_OF_MEMORY.
 vplResult vplBuildPaint(const vplScene* scene, vplGeometry* geometry, vplGeometryObject* objects);
 
-// Releases the textures of a geometry that is about to be destroyed.
-void vplReleasePaint(const vplGeometry* geometry);
+// What happened to an object of a scene.
+enum {
+    VPL_OBJECT_MOVED = 1,
+    VPL_OBJECT_RECOLOURED = 2, // it has another material, or one of its materials was changed
+};
+
+// True if paint, or NULL, needs no more than vplUpdatePaint to become that of the scene as it is now.
+bool vplPaint_Fits(const struct vplPaint* paint, const vplScene* scene);
+
+// Does so, with the mean reflectances of objects that have changed. The geometry has paint that fits. VPL_CANCELLED.
+vplResult vplUpdatePaint(const vplScene* scene, const vplGeometry* geometry, vplGeometryObject* objects,
+                         const uint8_t* changes);
+
+// True if the environment, or NULL, is that of the scene as it is now.
+bool vplEnvironment_IsOf(const vplEnvironment* environment, const vplScene* scene);
 
 // Sets `coplanar` of the objects of a geometry whose triangles and bounds are known. VPL_OUT_OF_MEMORY.
 vplResult vplMarkCoplanar(const vplGeometry* geometry, vplGeometryObject* objects);

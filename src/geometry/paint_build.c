@@ -15,18 +15,31 @@ static bool usesTexture(const vplMaterialDef* m)
     return m->texture >= 0 || m->alphaTexture >= 0;
 }
 
-// Tests whether an object shows textures, and whether it has colours of vertices.
-static void inspect(const vplScene* scene, const vplObjectDef* def, bool* textured, bool* coloured)
+// What the objects of a scene show.
+typedef struct Shown {
+    bool textures, colours;
+} Shown;
+
+static void inspect(const vplScene* scene, const vplObjectDef* def, Shown* shown)
 {
     const vplMeshDef shape = vplShapeOf(scene, def);
-    *coloured = *coloured || shape.colors != NULL;
+    shown->colours = shown->colours || shape.colors != NULL;
     if (def->material >= 0) {
-        *textured = *textured || usesTexture(&scene->materials[def->material]);
+        shown->textures = shown->textures || usesTexture(&scene->materials[def->material]);
         return;
     }
-    for (int i = 0; !*textured && i < shape.triangleCount; i++) {
-        *textured = usesTexture(&scene->materials[shape.materials[i]]);
+    for (int i = 0; !shown->textures && i < shape.triangleCount; i++) {
+        shown->textures = usesTexture(&scene->materials[shape.materials[i]]);
     }
+}
+
+static Shown inspectAll(const vplScene* scene)
+{
+    Shown shown = {false, false};
+    for (int i = 0; i < scene->objectCount; i++) {
+        inspect(scene, &scene->objects[i], &shown);
+    }
+    return shown;
 }
 
 static vplTexturePlace placeOf(const vplMaterialDef* m)
@@ -52,34 +65,59 @@ static void fillVertices(const vplScene* scene, const vplGeometry* g, float* tex
     }
 }
 
-static vplResult allocate(const vplScene* scene, const vplGeometry* g, bool textured, bool coloured,
-                          vplPaint** paintOut)
+static void fillPlaces(const vplScene* scene, vplTexturePlace* places)
 {
-    const size_t vertices = (size_t)g->vertexCount;
-    vplPaint* p = vplArena_AllocZero(g->arena, 1, sizeof *p);
-    float* texcoords = textured ? vplArena_AllocZero(g->arena, 2 * vertices, sizeof *texcoords) : NULL;
-    vplRgb* colours = coloured ? vplArena_Alloc(g->arena, vertices, sizeof *colours) : NULL;
-    vplTexturePlace* places = vplArena_Alloc(g->arena, (size_t)scene->materialCount, sizeof *places);
-    vplTexture** textures = vplArena_Alloc(g->arena, (size_t)scene->textureCount, sizeof *textures);
-    TRY(vplArena_Check(g->arena));
-    fillVertices(scene, g, texcoords, colours);
     for (int i = 0; i < scene->materialCount; i++) {
         places[i] = placeOf(&scene->materials[i]);
     }
-    for (int i = 0; i < scene->textureCount; i++) {
-        textures[i] = scene->textures[i].decoded;
+}
+
+static vplResult create(const vplScene* scene, const vplGeometry* g, Shown shown, const vplPaint** paintOut)
+{
+    const size_t vertices = (size_t)g->vertexCount, textureCount = (size_t)scene->textureCount;
+    vplArena* arena = vplArena_Create(g->context);
+    vplPaint* p = vplArena_AllocZero(arena, 1, sizeof *p);
+    float* texcoords = shown.textures ? vplArena_AllocZero(arena, 2 * vertices, sizeof *texcoords) : NULL;
+    vplRgb* colours = shown.colours ? vplArena_Alloc(arena, vertices, sizeof *colours) : NULL;
+    vplRgb* means = vplArena_Alloc(arena, (size_t)g->triangleCount, sizeof *means);
+    vplTexturePlace* places = vplArena_Alloc(arena, (size_t)scene->materialCount, sizeof *places);
+    vplTexture** textures = vplArena_Alloc(arena, textureCount, sizeof *textures);
+    const vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        fillVertices(scene, g, texcoords, colours);
+        fillPlaces(scene, places);
+        for (size_t i = 0; i < textureCount; i++) {
+            textures[i] = scene->textures[i].decoded;
+            vplTexture_Retain(textures[i]);
+        }
+        *p = (vplPaint){
+            texcoords, colours, places, means, textures, scene->textureCount, scene->materialCount, arena};
     }
-    *p = (vplPaint){.texcoords = texcoords, .colours = colours, .places = places, .textures = textures};
-    *paintOut = p;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, p, paintOut);
+}
+
+void vplPaint_Destroy(const vplPaint* paint)
+{
+    if (paint != NULL) {
+        for (int i = 0; i < paint->textureCount; i++) {
+            vplTexture_Release(paint->textures[i]);
+        }
+        vplArena_Destroy(paint->arena);
+    }
 }
 
 enum { CHUNK = 1024 }; // triangles per task
 
 typedef struct Averaging {
     const vplGeometry* geometry;
+    const uint8_t* changes; // of objects; NULL: all did
     vplRgb* means;
 } Averaging;
+
+static bool isChanged(const Averaging* a, int object)
+{
+    return a->changes == NULL || a->changes[object] != 0;
+}
 
 static void averageChunk(void* data, int chunk, int worker)
 {
@@ -87,63 +125,73 @@ static void averageChunk(void* data, int chunk, int worker)
     const Averaging* a = data;
     const int first = chunk * CHUNK, left = a->geometry->triangleCount - first;
     for (int t = first; t < first + (left < CHUNK ? left : CHUNK); t++) {
-        const vplTriangleCorners corners = vplGeometry_Corners(a->geometry, t);
-        a->means[t] = vplPaint_MeanOfPart(a->geometry, t, corners.corner);
+        if (isChanged(a, a->geometry->owners[t])) {
+            const vplTriangleCorners corners = vplGeometry_Corners(a->geometry, t);
+            a->means[t] = vplPaint_MeanOfPart(a->geometry, t, corners.corner);
+        }
     }
 }
 
-static vplResult averageTriangles(const vplGeometry* g, vplRgb* means)
+// Replaces the mean reflectance of an object, which knows materials only.
+static void averageObject(const vplGeometry* g, vplGeometryObject* object)
 {
-    Averaging averaging = {g, means};
-    return vplParallelForAsking(g->context, (int)(((int64_t)g->triangleCount + CHUNK - 1) / CHUNK),
-                                averageChunk, &averaging);
+    double sums[3] = {0}, area = 0;
+    for (int t = object->firstTriangle; t < object->firstTriangle + object->triangleCount; t++) {
+        const double a = vplGeometry_TriangleArea(g, t);
+        const vplRgb rho = vplPaint_Mean(g, t);
+        sums[0] += a * (double)rho.r;
+        sums[1] += a * (double)rho.g;
+        sums[2] += a * (double)rho.b;
+        area += a;
+    }
+    if (area > 0) {
+        object->reflectance =
+            (vplRgb){(float)(sums[0] / area), (float)(sums[1] / area), (float)(sums[2] / area)};
+    }
 }
 
-// Replaces the mean reflectances of objects, which know materials only.
-static void averageObjects(const vplGeometry* g, vplGeometryObject* objects)
+static vplResult average(const vplGeometry* g, vplGeometryObject* objects, const uint8_t* changes)
 {
+    Averaging a = {g, changes, (vplRgb*)g->paint->means};
+    TRY(vplParallelForAsking(g->context, (int)(((int64_t)g->triangleCount + CHUNK - 1) / CHUNK), averageChunk,
+                             &a));
     for (int i = 0; i < g->objectCount; i++) {
-        double sums[3] = {0}, area = 0;
-        for (int t = objects[i].firstTriangle; t < objects[i].firstTriangle + objects[i].triangleCount; t++) {
-            const double a = vplGeometry_TriangleArea(g, t);
-            const vplRgb rho = vplPaint_Mean(g, t);
-            sums[0] += a * (double)rho.r;
-            sums[1] += a * (double)rho.g;
-            sums[2] += a * (double)rho.b;
-            area += a;
-        }
-        if (area > 0) {
-            objects[i].reflectance =
-                (vplRgb){(float)(sums[0] / area), (float)(sums[1] / area), (float)(sums[2] / area)};
+        if (isChanged(&a, i)) {
+            averageObject(g, &objects[i]);
         }
     }
+    return VPL_SUCCESS;
 }
 
 vplResult vplBuildPaint(const vplScene* scene, vplGeometry* g, vplGeometryObject* objects)
 {
-    bool textured = false, coloured = false;
-    for (int i = 0; i < g->objectCount; i++) {
-        inspect(scene, &scene->objects[i], &textured, &coloured);
-    }
-    if (!textured && !coloured) {
+    const Shown shown = inspectAll(scene);
+    if (!shown.textures && !shown.colours) {
         return VPL_SUCCESS;
     }
-    vplPaint* paint = NULL;
-    vplRgb* means = vplArena_Alloc(g->arena, (size_t)g->triangleCount, sizeof *means);
-    TRY(allocate(scene, g, textured, coloured, &paint));
-    paint->means = means;
-    g->paint = paint;
-    for (; paint->textureCount < scene->textureCount; paint->textureCount++) {
-        vplTexture_Retain(paint->textures[paint->textureCount]);
-    }
-    TRY(averageTriangles(g, means));
-    averageObjects(g, objects);
-    return VPL_SUCCESS;
+    TRY(create(scene, g, shown, &g->paint));
+    return average(g, objects, NULL);
 }
 
-void vplReleasePaint(const vplGeometry* g)
+// ---- updates
+
+bool vplPaint_Fits(const vplPaint* p, const vplScene* scene)
 {
-    for (int i = 0; g->paint != NULL && i < g->paint->textureCount; i++) {
-        vplTexture_Release(g->paint->textures[i]);
+    const Shown shown = inspectAll(scene);
+    if (p == NULL) {
+        return !shown.textures && !shown.colours;
     }
+    bool same = (p->texcoords != NULL) == shown.textures && (p->colours != NULL) == shown.colours &&
+                p->textureCount == scene->textureCount && p->materialCount == scene->materialCount;
+    for (int i = 0; i < p->textureCount && same; i++) {
+        same = p->textures[i] == scene->textures[i].decoded;
+    }
+    return same;
+}
+
+vplResult vplUpdatePaint(const vplScene* scene, const vplGeometry* g, vplGeometryObject* objects,
+                         const uint8_t* changes)
+{
+    fillPlaces(scene, (vplTexturePlace*)g->paint->places);
+    return average(g, objects, changes);
 }

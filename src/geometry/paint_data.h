@@ -16,8 +16,12 @@ typedef struct vplPaint {
     const vplTexturePlace* places; // one per material
     const vplRgb* means;           // reflectance, one per triangle
     struct vplTexture** textures;
-    int textureCount;
+    int textureCount, materialCount;
+    struct vplArena* arena; // owns the arrays
 } vplPaint;
+
+// Releases the textures, too. NULL is allowed.
+void vplPaint_Destroy(const vplPaint* paint);
 
 // Texture coordinates of the corners of a triangle, in its material's textures, and their barycentrics.
 typedef struct vplTexturedTriangle {

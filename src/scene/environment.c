@@ -138,6 +138,7 @@ vplResult vplScene_SetEnvironment(vplScene* scene, const vplEnvironmentDef* def)
     scene->environmentPixels = pixels;
     scene->environment = copy;
     vplScene_Touch(scene, true);
+    scene->environmentStamp = scene->stamp;
     return VPL_SUCCESS;
 }
 

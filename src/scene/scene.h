@@ -37,10 +37,11 @@ typedef struct vplSceneTexture {
 
 struct vplScene {
     vplContext* context;
-    vplArena* arena;   // owns the scene and everything in it
-    uint64_t identity; // differs from that of every other scene of the context
-    uint64_t stamp;    // changes with everything
-    uint64_t surfaces; // changes with all that geometry is made of
+    vplArena* arena;           // owns the scene and everything in it
+    uint64_t identity;         // differs from that of every other scene of the context
+    uint64_t stamp;            // changes with everything
+    uint64_t surfaces;         // changes with all that geometry is made of
+    uint64_t environmentStamp; // changes with the environment
     double origin[3];
     vplCamera* cameras;
     vplSceneTexture* textures;
