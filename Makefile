@@ -156,6 +156,8 @@ bench: all
 	$(BUILD)/bench/flicker examples/scenes/room.json instant-radiosity 12
 	$(BUILD)/bench/paraboloid --quick examples/scenes/room.json
 	$(BUILD)/bench/scale
+	$(BUILD)/bench/edits examples/scenes/cut-outs.json
+	$(BUILD)/bench/refit
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/patches examples/scenes/room-area.json
 	$(BUILD)/bench/form_factors examples/scenes/room-area.json

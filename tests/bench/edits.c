@@ -11,7 +11,7 @@ enum { MOST_RUNS = 101 };
 
 typedef enum Edit { NOTHING, MOVE, MOVE_AWAY, COLOUR, COLOUR_ALL, LAMP, CAMERA, EDITS } Edit;
 
-static const char* const NAMES[EDITS] = {"nothing",    "move an object", "move it far", "an object's colour",
+static const char* const NAMES[EDITS] = {"nothing",     "move an object", "move it far", "an object's colour",
                                          "all colours", "a lamp",         "the camera"};
 
 typedef struct Bench {
@@ -146,8 +146,9 @@ static void measure(const Bench* b, Edit what, int runs)
         times[3][i] = render(b, NULL, &anew);
         same = same && edited == anew;
     }
-    printf("  %-20s %9.2f %9.2f %9.1f %9.1f  %s\n", NAMES[what], medianOf(times[0], runs), medianOf(times[1], runs),
-           medianOf(times[2], runs), medianOf(times[3], runs), same ? "same bits" : "OTHER BITS");
+    printf("  %-20s %9.2f %9.2f %9.1f %9.1f  %s\n", NAMES[what], medianOf(times[0], runs),
+           medianOf(times[1], runs), medianOf(times[2], runs), medianOf(times[3], runs),
+           same ? "same bits" : "OTHER BITS");
     fflush(stdout);
 }
 
