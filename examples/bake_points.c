@@ -52,14 +52,14 @@ static vplResult bake(const vplScene* scene, int wanted, vplSurfacePoint* points
     vplShadeLight* lights =
         result == VPL_SUCCESS ? malloc(((size_t)set->lightCount + 1) * sizeof *lights) : NULL;
     vplEmitterDef* sources = malloc(((size_t)emitters + 1) * sizeof *sources);
-    vplShadow* shadows = calloc((size_t)emitters + 1, sizeof *shadows); // without a map: by rays
-    if (result == VPL_SUCCESS && (lights == NULL || sources == NULL || shadows == NULL)) {
+    if (result == VPL_SUCCESS && (lights == NULL || sources == NULL)) {
         fprintf(stderr, "out of memory\n");
         result = VPL_OUT_OF_MEMORY;
     }
     if (result == VPL_SUCCESS) {
         const int count = spreadPoints(geometry, wanted, points);
-        vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .lights = lights};
+        vplShadeDef def = vplDefaultShadeDef();
+        def.lights = lights;
         def.lightCount = vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights);
         def.lightRays = true;
         for (int i = 0; i < emitters; i++) {
@@ -67,7 +67,6 @@ static vplResult bake(const vplScene* scene, int wanted, vplSurfacePoint* points
         }
         def.emitters = sources;
         def.emitterCount = emitters;
-        def.shadows = shadows;
         def.minDistance = 0.1f; // metres: nearer lights shine as from there
         result = vplShadePoints(geometry, &def, points, count, light, NULL);
         for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
@@ -78,7 +77,6 @@ static vplResult bake(const vplScene* scene, int wanted, vplSurfacePoint* points
     }
     free(lights);
     free(sources);
-    free(shadows);
     vplLightSet_Destroy(set);
     vplGeometry_Destroy(geometry);
     return result;

@@ -72,7 +72,10 @@ static vplShadeLight* prepareLights(const vplLightSet* set, int* countOut)
 // 3. The virtual lights light points of the floor, here 16 along its front, which rays find.
 static void lightFloor(const vplGeometry* geometry, const vplShadeLight* lights, int lightCount)
 {
-    vplShadeDef def = {.minDistance = 0.2f, .lights = lights, .lightCount = lightCount};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.minDistance = 0.2f; // metres: nearer lights shine as from there
+    def.lights = lights;
+    def.lightCount = lightCount;
     vplSurfacePoint points[16];
     vplRgb irradiance[16];
     int count = 0;
@@ -128,8 +131,7 @@ int main(int count, char** words)
     int lightCount;
     vplShadeLight* lights = prepareLights(set, &lightCount);
     lightFloor(geometry, lights, lightCount);
-    vplShadeDef def = {0};
-    def.accumulation = VPL_ACCUMULATE_MULTIPASS;
+    vplShadeDef def = vplDefaultShadeDef(); // one pass per virtual light
     def.minDistance = 0.2f;
     def.emitters = light;
     def.shadows = &shadow;

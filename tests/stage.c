@@ -41,7 +41,8 @@ vplShadeLight* rollLights(int count, uint64_t seed)
 
 vplShadeDef stageDef(const vplShadeLight* lights, int count, int side)
 {
-    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.3f};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.minDistance = 0.3f;
     def.accumulation = side > 0 ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
     def.interleave = side;
     def.lights = lights;

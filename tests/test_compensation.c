@@ -85,19 +85,17 @@ TEST(PlaneGetsBackWhatTheClampTakes, 1)
         const float h = (float)number(&t, row, "h"), distance = (float)sqrt(c);
         vplGeometry* g = planeOver(context, h, 8 * distance);
         vplShadeLight* lights = gridOver(h, distance);
-        vplCompensationDef near = {.rayCount = PLANE_RAYS,
-                                   .hitLights = SIDE * SIDE,
-                                   .lights = lights,
-                                   .lightCount = SIDE * SIDE,
-                                   .reflection = 1,
-                                   .emitterLightCount = SIDE * SIDE,
-                                   .emitterLightDistance = distance,
-                                   .seesEmission = true};
-        const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
-                                 .minDistance = distance,
-                                 .lights = lights,
-                                 .lightCount = SIDE * SIDE,
-                                 .compensation = &near};
+        vplCompensationDef near = vplDefaultCompensationDef();
+        near.rayCount = PLANE_RAYS;
+        near.lights = lights;
+        near.lightCount = near.hitLights = near.emitterLightCount = SIDE * SIDE;
+        near.emitterLightDistance = distance;
+        near.seesReflection = false;
+        vplShadeDef def = vplDefaultShadeDef();
+        def.minDistance = distance;
+        def.lights = lights;
+        def.lightCount = SIDE * SIDE;
+        def.compensation = &near;
         assertNear(givenBack(g, &def), lost, 1e-3, "by rays alone", row);
         near.emitterLightDistance = 0.2f * distance; // the grid's cells measure D / 24
         assertNear(givenBack(g, &def), lost, 4e-3, "by rays and lights", row);

@@ -124,8 +124,8 @@ enum { VIEW = 48 };
 // Renders `geometry` from its scene's camera, with one virtual light whose shadows come from rays or a map.
 static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplShadeLight* light, bool map)
 {
-    vplShadeDef def = {
-        .lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .batch = 1};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.accumulation = VPL_ACCUMULATE_DEFERRED;
     vplHemiMaps* maps = NULL;
     if (map) {
         const vplHemiMapPlace place = {{light->px, light->py, light->pz}, {light->nx, light->ny, light->nz}};

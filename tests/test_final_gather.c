@@ -198,9 +198,13 @@ TEST(CallersSayWhatRaysMeet, 2)
     camera.nearPlane = 0.01;
     const vplView view = vplView_Create(&camera, 12, 8);
     const float radiosity = 3;
-    vplGatherDef gather = {.rayCount = 4, .meet = meetGrey, .user = &radiosity};
-    vplShadeDef def = {
-        .lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .gather = &gather};
+    vplGatherDef gather = vplDefaultGatherDef();
+    gather.rayCount = 4;
+    gather.meet = meetGrey;
+    gather.user = &radiosity;
+    vplShadeDef def = vplDefaultShadeDef();
+    def.accumulation = VPL_ACCUMULATE_DEFERRED;
+    def.gather = &gather;
     vplImage* image;
     assert_int_equal(vplImage_Create(context, 12, 8, &image), VPL_SUCCESS);
     assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_SUCCESS);

@@ -63,10 +63,10 @@ TEST(ChosenTrianglesHaveTheMeanOfAll, 2)
     double squares = 0;
     assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
     assert_int_equal(vplEmission_Create(g, NULL, 0, &emission), VPL_SUCCESS);
-    const vplShadeDef chosenDef = {.lighting = VPL_LIGHTING_PHYSICAL, .trianglesPerPoint = 4},
-                      allDef = {.lighting = VPL_LIGHTING_PHYSICAL,
-                                .areaLights = all,
-                                .areaLightCount = vplSampleAreaLights(emission, LAMPS * SAMPLES, all)};
+    vplShadeDef chosenDef = vplDefaultShadeDef(), allDef = vplDefaultShadeDef();
+    chosenDef.trianglesPerPoint = 4;
+    allDef.areaLights = all;
+    allDef.areaLightCount = vplSampleAreaLights(emission, LAMPS * SAMPLES, all);
     for (int triangle = 0; triangle < 12; triangle++) { // the walls
         double sum[2], chosen[2];
         lightClosePoints(g, &allDef, triangle, sum);

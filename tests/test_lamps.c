@@ -275,8 +275,10 @@ TEST(ChosenEmittersHaveTheMeanOfAll, 2)
     for (int i = 0; i < LAMPS; i++) {
         emitters[i] = *vplScene_GetEmitter(scene, i);
     }
-    vplShadeDef def = {
-        .lighting = VPL_LIGHTING_PHYSICAL, .emitters = emitters, .shadows = shadows, .emitterCount = LAMPS};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.emitters = emitters;
+    def.shadows = shadows;
+    def.emitterCount = LAMPS;
     double squares = 0;
     int checked = 0;
     for (int triangle = 0; triangle < g->triangleCount; triangle += 5) {

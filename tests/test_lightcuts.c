@@ -235,7 +235,8 @@ TEST(TwiceTheLightIsTwiceThePicture, 2)
             lights[i].px *= at, lights[i].py *= at, lights[i].pz *= at;
             lights[i].r *= scale, lights[i].g *= scale, lights[i].b *= scale;
         }
-        vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.1f, .cutError = 0.02f};
+        vplShadeDef def = vplDefaultShadeDef();
+        def.minDistance = 0.1f;
         def.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
         def.lights = lights;
         def.lightCount = COUNT;
@@ -269,7 +270,7 @@ TEST(NastyLightsLeaveNoNan, 2)
         }
         vplImage* images[2];
         for (int k = 0; k < 2; k++) {
-            vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .cutError = 0.02f};
+            vplShadeDef def = vplDefaultShadeDef();
             def.accumulation = k ? VPL_ACCUMULATE_DEFERRED : VPL_ACCUMULATE_LIGHTCUTS;
             def.lights = lights;
             def.lightCount = COUNT;
@@ -350,7 +351,8 @@ TEST(CutsCanBeCancelledAndWrongErrorsAreRefused, 1)
     vplShadeLight* lights = rollTreeLights(KIND_CLOUD, 5000, 1);
     vplImage* image;
     assert_int_equal(vplImage_Create(context, 8, 8, &image), VPL_SUCCESS);
-    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_LIGHTCUTS};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
     def.lights = lights;
     def.lightCount = 5000;
     static const float wrong[] = {0, -1, 1.5f, NAN};

@@ -286,16 +286,16 @@ static vplResult shadeClusters(Attempt* a)
                                          .texels = texels,
                                          .context = a->context};
     }
-    const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
-                             .accumulation = VPL_ACCUMULATE_INTERLEAVED,
-                             .output = a->variant ? VPL_OUTPUT_DENOISED : VPL_OUTPUT_GATHER,
-                             .interleave = 2,
-                             .minDistance = 0.1f,
-                             .lights = lights,
-                             .lightCount = LIGHTS,
-                             .lightClusters = clusters,
-                             .clusterShadows = maps,
-                             .clusterCount = CLUSTERS};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.accumulation = VPL_ACCUMULATE_INTERLEAVED;
+    def.output = a->variant ? VPL_OUTPUT_DENOISED : VPL_OUTPUT_GATHER;
+    def.interleave = 2;
+    def.minDistance = 0.1f;
+    def.lights = lights;
+    def.lightCount = LIGHTS;
+    def.lightClusters = clusters;
+    def.clusterShadows = maps;
+    def.clusterCount = CLUSTERS;
     TRY(openRoom(a, "tests/data/room.json"));
     TRY(vplImage_Create(a->context, 8, 6, &a->image));
     const vplView view = vplView_Create(vplScene_GetCamera(a->scene, 0), 8, 6);

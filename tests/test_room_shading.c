@@ -102,11 +102,12 @@ TEST(EveryPointOfTheRoomIsLitAsTheTableSays, 2)
                                (float)number(&objects, i, "rho_b")};
             }
         }
-        vplShadeDef def = {.lighting = VPL_LIGHTING_DOCUMENTED,
-                           .emitters = &emitter,
-                           .shadows = &shadow,
-                           .emitterCount = 1,
-                           .particleCount = 10};
+        vplShadeDef def = vplDefaultShadeDef();
+        def.lighting = VPL_LIGHTING_DOCUMENTED;
+        def.emitters = &emitter;
+        def.shadows = &shadow;
+        def.emitterCount = 1;
+        def.particleCount = 10;
         vplEmitterRay ray = {.position = emitter.position};
         vplShading shading = vplShading_Make(room, NULL, &def);
         shading.direct.rays = &ray;

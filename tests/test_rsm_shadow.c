@@ -73,7 +73,10 @@ TEST(EmittersTakeTheirShadowsFromTheirMaps, 2)
         vplReflectiveMap* map = mapOf(room, &e, 512);
         const vplReflectiveMap* const maps[] = {map};
         const vplShadow none = {0};
-        vplShadeDef def = {.batch = 1, .emitters = &e, .shadows = &none, .emitterCount = 1};
+        vplShadeDef def = vplDefaultShadeDef();
+        def.emitters = &e;
+        def.shadows = &none;
+        def.emitterCount = 1;
         vplShadeStats stats;
         def.accumulation = VPL_ACCUMULATE_DEFERRED;
         vplImage* byRays = shaded(room, &def, &stats);

@@ -139,7 +139,8 @@ TEST(NearAndFarPlanesDoNotChangeWhatIsSeen, 2)
         camera.nearPlane = planes[i][0];
         camera.farPlane = planes[i][1];
         const vplView view = vplView_Create(&camera, 128, 128);
-        const vplShadeDef def = {.output = VPL_OUTPUT_OBJECT};
+        vplShadeDef def = vplDefaultShadeDef();
+        def.output = VPL_OUTPUT_OBJECT;
         assert_int_equal(vplImage_Create(context, 128, 128, &images[i]), VPL_SUCCESS);
         assert_int_equal(vplShadeView(g, &view, &def, images[i], NULL), VPL_SUCCESS);
         assert_memory_equal(images[i]->pixels, images[0]->pixels, 3 * 128 * 128 * sizeof(float));

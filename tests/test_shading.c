@@ -293,11 +293,12 @@ static double directBelow(vplContext* context, vplLighting lighting, float d, in
     vplEmitterDef emitter = vplDefaultEmitterDef();
     emitter.position = vplVec(0, d, 0);
     vplShadow shadow = {0};
-    const vplShadeDef def = {.lighting = lighting,
-                             .emitters = &emitter,
-                             .shadows = &shadow,
-                             .emitterCount = 1,
-                             .particleCount = particles};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.lighting = lighting;
+    def.emitters = &emitter;
+    def.shadows = &shadow;
+    def.emitterCount = 1;
+    def.particleCount = particles;
     const vplSurfacePoint point = {{0, 0, 0}, {0, 1, 0}, 0};
     vplRgb e;
     int64_t rays = 0;
@@ -452,8 +453,9 @@ TEST(AMillionEqualLightsAddUp, 2)
     for (int i = 0; i < COUNT; i++) {
         lights[i] = lightAt(vplVec(0.3f, 2, 0.1f), vplVec(0, -1, 0), 0.1f);
     }
-    vplShadeDef def = {
-        .lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = lights};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.accumulation = VPL_ACCUMULATE_DEFERRED;
+    def.lights = lights;
     def.lightCount = 1;
     vplImage* one = shadeFloor(context, def, 4, 4);
     def.lightCount = COUNT;
@@ -473,8 +475,11 @@ TEST(EveryPixelOfAnySizeIsShadedOnce, 2)
     vplShadeLight light = lightAt(vplVec(0, 5, 0), vplVec(0, -1, 0), 1);
     const int sizes[][2] = {{1, 1}, {3, 5}, {64, 64}, {65, 63}, {130, 67}};
     for (int i = 0; i < 5; i++) {
-        vplShadeDef def = {
-            .lighting = VPL_LIGHTING_DOCUMENTED, .lights = &light, .lightCount = 1, .batch = 1};
+        vplShadeDef def = vplDefaultShadeDef();
+        def.lighting = VPL_LIGHTING_DOCUMENTED;
+        def.lights = &light;
+        def.lightCount = 1;
+        def.batch = 1;
         vplImage* images[3];
         for (int k = 0; k < 3; k++) {
             def.accumulation = (vplAccumulation)k;

@@ -24,12 +24,12 @@ int main(int count, char** words)
                   vplGeometry_Create(scene, &geometry) || vplMakeLights(scene, &options, &set) ||
                   geometry->triangleCount < POINTS || set->lightCount > MOST_LIGHTS;
     if (!failed) {
-        const vplShadow byRays = {0};
-        vplShadeDef def = {
-            .lighting = VPL_LIGHTING_PHYSICAL, .lights = lights, .lightRays = true, .minDistance = 0.1f};
+        vplShadeDef def = vplDefaultShadeDef();
+        def.lights = lights;
+        def.lightRays = true;
+        def.minDistance = 0.1f;
         def.lightCount = vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights);
         def.emitters = vplScene_GetEmitter(scene, 0); // the scene has one
-        def.shadows = &byRays;
         def.emitterCount = 1;
         for (int i = 0; i < POINTS; i++) {
             points[i] = (vplSurfacePoint){vplGeometry_SampleTriangle(geometry, i, 0.3f, 0.3f).position,

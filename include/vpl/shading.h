@@ -70,30 +70,35 @@ typedef enum vplShadeOutput {
 // so they are listed again.
 // Source: Kollig and Keller, Illumination in the Presence of Weak Singularities, MCQMC 2004.
 typedef struct vplCompensationDef {
-    int rayCount; // per point, [1, VPL_MAX_NEAR_RAYS]
-    // Randomly chosen virtual lights that light a hit, [1, VPL_MAX_LIGHTS]. The result is unbiased for any
-    // number; noise is low once each light stands for a disc of radius minDistance or less.
+    int rayCount; // per point, [1, VPL_MAX_NEAR_RAYS]; default 2, the fewest of vplRender without interleaving
+    // Randomly chosen virtual lights that light a hit, [1, VPL_MAX_LIGHTS]; default 16, the fewest of
+    // vplRender. The result is unbiased for any number; noise is low once each light stands for a disc of
+    // radius minDistance or less.
     int hitLights;
-    uint32_t firstRay; // index of a point's first ray in its sequence; passes continue the sequence
-    uint64_t seed;
-    const vplEmitterDef* emitters; // as in vplShadeDef
+    uint32_t firstRay; // index of a point's first ray in its sequence, which passes continue; default 0
+    uint64_t seed;     // default 0
+    const vplEmitterDef* emitters; // as in vplShadeDef; default NULL, without emitters
     const vplShadow* shadows;
     int emitterCount;
-    const vplShadeLight* areaLights;
+    const vplShadeLight* areaLights; // default NULL, without area lights
     int areaLightCount;
     float areaLightMinDistance;
-    int trianglesPerPoint; // of the picture; 16 times fewer light a hit
-    const vplShadeLight* lights;
+    int trianglesPerPoint;       // of the picture; 16 times fewer light a hit; default 0
+    const vplShadeLight* lights; // default NULL, without virtual lights
     int lightCount;
-    bool lightRays;   // the virtual lights cast shadows, by rays also where the picture uses maps
-    float reflection; // factor of reflectances: 1, or 1/pi for lights with documented attenuation
-    // The first emitterLightCount lights stand for the emission of surfaces. Within emitterLightDistance,
+    bool lightRays;   // the virtual lights cast shadows, by rays also where pictures use maps; default false
+    float reflection; // factor of reflectances: 1 (default), or 1/pi for lights with documented attenuation
+    // The first emitterLightCount lights stand for the emission of surfaces; default 0. Within emitterLightDistance,
     // metres, (0, minDistance], rays find that emission; beyond it these lights compensate for themselves.
     int emitterLightCount;
-    float emitterLightDistance;
-    bool seesEmission;   // the picture is lit by these lights: the first ray finds emission, too
-    bool seesReflection; // the picture is lit by the other lights
+    float emitterLightDistance; // default 0; must be > 0 where there are such lights
+    bool seesEmission;          // they light the picture: the first ray finds emission, too; default true
+    bool seesReflection;        // the other lights light the picture; default true
+    uint32_t cookie;            // set by vplDefaultCompensationDef
 } vplCompensationDef;
+
+// Two short rays per point. Nothing lights their hits until emitters, areaLights or lights are set.
+vplCompensationDef vplDefaultCompensationDef(void);
 
 // The light that a ray of a final gather meets.
 typedef struct vplMetLight {
@@ -108,35 +113,39 @@ typedef vplMetLight vplMeetFcn(const void* user, const vplHit* hit, vplVec3 dire
 // K x K take different parts of K^2 rayCount directions, and the filter takes the mean of neighbours.
 // Source: Reichert, A Two-Pass Radiosity Method Driven by Lights and Viewer Position, Cornell 1992.
 typedef struct vplGatherDef {
-    int rayCount;      // per pixel, [1, VPL_MAX_NEAR_RAYS]
-    uint32_t firstRay; // index of a pixel's first ray in its sequence
-    uint64_t seed;
-    vplMeetFcn* meet; // called by all workers at the same time
-    const void* user;
-    const vplEmitterDef* emitters; // they light near hits, with shadow rays
+    int rayCount;      // per pixel, [1, VPL_MAX_NEAR_RAYS]; default 64, as vplRender has for cut-outs
+    uint32_t firstRay; // index of a pixel's first ray in its sequence; default 0
+    uint64_t seed;     // default 0
+    vplMeetFcn* meet;  // called by all workers at the same time; required: the default, NULL, is refused
+    const void* user;  // passed to `meet`; default NULL
+    const vplEmitterDef* emitters; // they light near hits, with shadow rays; default NULL, without emitters
     int emitterCount;
-    const vplShadeLight* areaLights; // as in vplShadeDef
+    const vplShadeLight* areaLights; // as in vplShadeDef; default NULL, without area lights
     int areaLightCount;
     float areaLightMinDistance;
-    int trianglesPerPoint; // > 0: one triangle that a tree chooses lights a near hit
+    int trianglesPerPoint; // > 0: one triangle that a tree chooses lights a near hit; default 0
+    uint32_t cookie;       // set by vplDefaultGatherDef
 } vplGatherDef;
 
+// 64 rays per pixel. The caller must set `meet`, because only the caller knows the light of surfaces.
+vplGatherDef vplDefaultGatherDef(void);
+
 typedef struct vplShadeDef {
-    vplLighting lighting;
-    vplAccumulation accumulation;
-    vplShadeOutput output;
-    int batch;         // lights per pass, >= 1; batched only
-    int interleave;    // K, [1, VPL_MAX_INTERLEAVE]; interleaved only; 1 is deferred
-    float minDistance; // clamp distance of virtual lights, metres, >= 0; 0: no clamp; physical only
+    vplLighting lighting;         // default VPL_LIGHTING_PHYSICAL
+    vplAccumulation accumulation; // default VPL_ACCUMULATE_MULTIPASS
+    vplShadeOutput output;        // default VPL_OUTPUT_RADIANCE
+    int batch;                    // lights per pass, >= 1; batched only; default 64
+    int interleave;               // K, [1, VPL_MAX_INTERLEAVE]; interleaved only; 1 is deferred; default 4
+    float minDistance; // clamp distance of virtual lights, metres, >= 0; 0 (default): no clamp; physical only
 
     // Direct light.
-    const vplEmitterDef* emitters; // documented: point emitters only
-    // One per emitter; rays where its map is NULL, and for directional emitters. NULL: rays for all.
+    const vplEmitterDef* emitters; // documented: point emitters only; default NULL
+    // One per emitter; rays where its map is NULL, and for directional emitters. NULL (default): rays for all.
     const vplShadow* shadows;
-    // One per emitter: its shadow is taken from this reflective shadow map. NULL, also of an entry: from
+    // One per emitter: its shadow is taken from this reflective shadow map. NULL (default), also of an entry: from
     // `shadows`.
     const vplReflectiveMap* const* emitterMaps;
-    int emitterCount; // 0: no direct light
+    int emitterCount; // 0 (default): no direct light
     // Points and spots that light a point, with shadow rays, chosen from a tree by how much light they may send there; 0
     // (default), or not fewer than there are: all do. Physical only. The noise depends on a point's position alone.
     int emittersPerPoint;
@@ -145,39 +154,43 @@ typedef struct vplShadeDef {
     // The trees to choose from, of these emitters and those of `compensation` and `gather`, which are the same; NULL
     // (default): they are made for this call.
     const struct vplEmitterTrees* emitterTrees;
-    const vplShadeLight* areaLights; // samples of area lights, with shadow rays; physical only
-    int areaLightCount;
-    float areaLightMinDistance; // their clamp distance, as minDistance
-    int particleCount;          // N, by which documented direct light is divided (0 counts as 1)
+    const vplShadeLight* areaLights; // samples of area lights, with shadow rays; physical only; default NULL
+    int areaLightCount;              // default 0
+    float areaLightMinDistance;      // their clamp distance, as minDistance; default 0
+    int particleCount;               // N, by which documented direct light is divided; default 0, counts as 1
 
     // Coverage antialiasing: samples per pixel besides its centre, [0, VPL_MAX_SAMPLES_PER_PIXEL], rounded
-    // down to an even number; 0: pixels show what is in their centres. Radiance only; multipass and batched
-    // ignore it.
+    // down to an even number; 0 (default): pixels show what is in their centres. Radiance only; multipass and
+    // batched ignore it.
     int samples;
 
     // Virtual lights.
-    const vplShadeLight* lights;
-    int lightCount;                 // 0: no indirect light
-    const vplHemiMap* lightShadows; // one per virtual light; NULL: no shadows, or by rays
-    bool lightRays;                 // shadows by rays
+    const vplShadeLight* lights;    // default NULL
+    int lightCount;                 // 0 (default): no indirect light
+    const vplHemiMap* lightShadows; // one per virtual light; NULL (default): no shadows, or by rays
+    bool lightRays;                 // shadows by rays; default false
     // Clusters of lights that share a shadow, instead of lightShadows and lightRays; deferred and interleaved
     // only, without compensation. One per virtual light: index in clusterShadows, -1: no shadow; NULL
     // (default): no clusters. Lights of one cluster should follow each other: the shadow is looked up where
     // the list changes cluster, and once per VPL_LIGHT_GROUP lights. Interleaved: from 8 clusters with lights
     // on, and with an even K, each class has lights of every other cluster.
     const int* lightClusters;
-    const vplParaboloidMap* clusterShadows;
-    int clusterCount;
-    float cutError;                         // lightcuts: see vplRenderOptions
-    bool emission;                          // the picture shows the emission of surfaces
-    const vplCompensationDef* compensation; // physical only; NULL: light taken by the clamp is lost
-    const vplGatherDef* gather;             // deferred and interleaved, physical only; NULL: no final gather
+    const vplParaboloidMap* clusterShadows; // default NULL
+    int clusterCount;                       // default 0
+    float cutError;                         // lightcuts: see vplRenderOptions; (0, 1], default 0.02
+    bool emission;                          // the picture shows the emission of surfaces; default false
+    const vplCompensationDef* compensation; // physical only; NULL (default): light taken by the clamp is lost
+    const vplGatherDef* gather; // deferred and interleaved, physical only; NULL (default): no final gather
     // Only rows in [firstRow, endRow) of the image are written, with the bits that they have in the whole picture. Both are
     // multiples of VPL_TILE_SIDE, or endRow is the height. endRow 0 (default): all.
     int firstRow, endRow;
     vplProgressFcn* progress; // called while vplShadeView draws; default NULL
     void* progressUser;
+    uint32_t cookie; // set by vplDefaultShadeDef
 } vplShadeDef;
+
+// A black picture: neither emitters nor lights, and surfaces do not show what they emit.
+vplShadeDef vplDefaultShadeDef(void);
 
 typedef struct vplShadeStats {
     vplRasterStats raster;
@@ -187,7 +200,8 @@ typedef struct vplShadeStats {
     int largestCut;           // lightcuts: most virtual lights evaluated for one pixel
 } vplShadeStats;
 
-// Draws the geometry into `image`, which has the view's size. statsOut may be NULL.
+// Draws the geometry into `image`, which has the view's size. statsOut may be NULL. VPL_INVALID_ARGUMENT for an image of
+// another size, and for a def, compensation or gather that its default function did not make or with values out of range.
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplImage* image, vplShadeStats* statsOut);
 
@@ -199,7 +213,8 @@ typedef struct vplSurfacePoint {
 } vplSurfacePoint;
 
 // Irradiance of points by the def's emitters, area lights and virtual lights, W/m^2, with its shadows.
-// Accumulation, output, clusters and compensation are ignored. Rays are added to *raysOut, which may be NULL.
+// Accumulation, output, clusters, compensation and gather are ignored. Rays are added to *raysOut, which may be NULL.
+// VPL_INVALID_ARGUMENT for a def that vplDefaultShadeDef did not make.
 vplResult vplShadePoints(const vplGeometry* geometry, const vplShadeDef* def, const vplSurfacePoint* points,
                          int count, vplRgb* irradianceOut, int64_t* raysOut);
 
@@ -216,7 +231,8 @@ typedef struct vplClampLoss {
 } vplClampLoss;
 
 // Estimates the loss from `pointCount` evenly spread pixels. def->compensation says how rays are cast,
-// whether or not the picture is compensated.
+// whether or not the picture is compensated; both numbers are 0 without it. VPL_INVALID_ARGUMENT for a def or a
+// compensation that its default function did not make, or with ray counts out of range.
 vplResult vplEstimateClampLoss(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                                int pointCount, vplClampLoss* lossOut);
 

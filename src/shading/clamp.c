@@ -117,6 +117,8 @@ vplResult vplEstimateClampLoss(const vplGeometry* geometry, const vplView* view,
                                int pointCount, vplClampLoss* lossOut)
 {
     REQUIRE(CONTEXT_OF(geometry), geometry, view, def, lossOut);
+    TRY(vplShadeDef_CheckCookie(geometry->context, def));
+    TRY(vplShadeDef_CheckCompensation(geometry->context, def));
     vplShading shading = vplShading_Make(geometry, view, def);
     vplClampLoss sum = {0, 0};
     shading.arena = vplArena_Create(geometry->context);

@@ -1,8 +1,53 @@
 // SPDX-License-Identifier: MIT
-// Refuses what vplShadeView cannot draw, before anything is allocated.
+// The defaults of definitions; refuses what vplShadeView cannot draw, before anything is allocated.
 #include "shading/shading.h"
 
 #include <math.h>
+
+enum { SHADE_COOKIE = 0x56504cc0, COMPENSATION_COOKIE, GATHER_COOKIE };
+
+vplShadeDef vplDefaultShadeDef(void)
+{
+    return (vplShadeDef){.batch = 64, .interleave = 4, .cutError = 0.02f, .cookie = SHADE_COOKIE};
+}
+
+vplCompensationDef vplDefaultCompensationDef(void)
+{
+    return (vplCompensationDef){.rayCount = 2,
+                                .hitLights = 16,
+                                .reflection = 1,
+                                .seesEmission = true,
+                                .seesReflection = true,
+                                .cookie = COMPENSATION_COOKIE};
+}
+
+vplGatherDef vplDefaultGatherDef(void)
+{
+    return (vplGatherDef){.rayCount = 64, .cookie = GATHER_COOKIE};
+}
+
+vplResult vplShadeDef_CheckCookie(const vplContext* context, const vplShadeDef* def)
+{
+    return def->cookie == SHADE_COOKIE
+               ? VPL_SUCCESS
+               : vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef was not made by vplDefaultShadeDef");
+}
+
+vplResult vplShadeDef_CheckCompensation(const vplContext* context, const vplShadeDef* def)
+{
+    const vplCompensationDef* c = def->compensation;
+    if (c != NULL && c->cookie != COMPENSATION_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplCompensationDef was not made by vplDefaultCompensationDef");
+    }
+    if (c != NULL && (c->rayCount < 1 || c->rayCount > VPL_MAX_NEAR_RAYS || c->hitLights < 1)) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
+            c->rayCount, c->hitLights, VPL_MAX_NEAR_RAYS);
+    }
+    return VPL_SUCCESS;
+}
 
 static vplResult checkClusters(const vplContext* context, const vplShadeDef* def)
 {
@@ -62,6 +107,12 @@ static vplResult checkAccumulation(const vplContext* context, const vplShadeDef*
 static vplResult checkGather(const vplContext* context, const vplShadeDef* def)
 {
     const vplGatherDef* g = def->gather;
+    if (g != NULL && g->cookie != GATHER_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplGatherDef was not made by vplDefaultGatherDef");
+    }
+    if (g != NULL && g->meet == NULL) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplGatherDef.meet is NULL, must be a function");
+    }
     if (g != NULL && (g->rayCount < 1 || g->rayCount > VPL_MAX_NEAR_RAYS)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplGatherDef.rayCount is %d, must be in [1, %d]",
                        g->rayCount, VPL_MAX_NEAR_RAYS);
@@ -84,6 +135,7 @@ vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, co
                             const vplImage* image)
 {
     const vplContext* context = geometry->context;
+    TRY(vplShadeDef_CheckCookie(context, def));
     if (image->width != view->width || image->height != view->height) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "image is %dx%d, must be %dx%d as the view",
                        image->width, image->height, view->width, view->height);
@@ -94,13 +146,7 @@ vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, co
                        def->samples, VPL_MAX_SAMPLES_PER_PIXEL);
     }
     TRY(checkDistance(context, "areaLightMinDistance", def->areaLightMinDistance));
-    const vplCompensationDef* c = def->compensation;
-    if (c != NULL && (c->rayCount < 1 || c->rayCount > VPL_MAX_NEAR_RAYS || c->hitLights < 1)) {
-        return vplFail(
-            context, VPL_INVALID_ARGUMENT,
-            "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
-            c->rayCount, c->hitLights, VPL_MAX_NEAR_RAYS);
-    }
+    TRY(vplShadeDef_CheckCompensation(context, def));
     TRY(checkRows(context, view, def));
     TRY(checkGather(context, def));
     if (def->output == VPL_OUTPUT_BACKGROUND && geometry->environment == NULL) {

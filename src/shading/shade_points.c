@@ -54,6 +54,7 @@ vplResult vplShadePoints(const vplGeometry* geometry, const vplShadeDef* def, co
     REQUIRE(CONTEXT_OF(geometry), geometry, def);
     REQUIRE_ARRAY(CONTEXT_OF(geometry), points, count);
     REQUIRE_ARRAY(CONTEXT_OF(geometry), irradianceOut, count);
+    TRY(vplShadeDef_CheckCookie(geometry->context, def));
     PointsTask task = {.shading = vplShading_Make(geometry, NULL, def),
                        .points = points,
                        .count = count,

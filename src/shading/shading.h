@@ -104,7 +104,14 @@ typedef struct vplShading {
 // A render without picture, objects, emitter rays and arena.
 vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def);
 
-// Logs and refuses values out of range.
+// Refuses a def that vplDefaultShadeDef did not make.
+vplResult vplShadeDef_CheckCookie(const vplContext* context, const vplShadeDef* def);
+
+// Refuses a compensation that vplDefaultCompensationDef did not make, and numbers of rays and lights out of range. A def
+// without compensation passes.
+vplResult vplShadeDef_CheckCompensation(const vplContext* context, const vplShadeDef* def);
+
+// Refuses what vplShadeView cannot draw, with a message.
 vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                             const vplImage* image);
 

@@ -60,7 +60,8 @@ static void placesOf(const Bench* b, int first, int count, vplHemiMapPlace* plac
 static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int first, int lights,
                       const vplHemiMaps* maps, bool rays)
 {
-    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.2f};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.minDistance = 0.2f;
     def.accumulation = VPL_ACCUMULATE_DEFERRED;
     def.lights = b->lights + first;
     def.lightCount = lights;

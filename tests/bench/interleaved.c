@@ -40,7 +40,8 @@ static vplResult shade(void* user, int way)
     const Bench* b = user;
     const vplImage* image = b->images[way];
     const vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), image->width, image->height);
-    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.2f};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.minDistance = 0.2f;
     def.accumulation = sides[way] > 1 ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
     def.interleave = sides[way];
     def.lights = b->lights;

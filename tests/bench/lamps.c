@@ -104,10 +104,10 @@ int main(int count, char** words)
     for (int i = 0; i < emitterCount; i++) {
         emitters[i] = *vplScene_GetEmitter(scene, i);
     }
-    b.truth = (vplShadeDef){.lighting = VPL_LIGHTING_PHYSICAL,
-                            .accumulation = VPL_ACCUMULATE_DEFERRED,
-                            .emitters = emitters,
-                            .emitterCount = emitterCount};
+    b.truth = vplDefaultShadeDef();
+    b.truth.accumulation = VPL_ACCUMULATE_DEFERRED;
+    b.truth.emitters = emitters;
+    b.truth.emitterCount = emitterCount;
     check(vplImage_Create(context, size, size, &b.image));
     run(&b, area, truth);
     vplImage_Destroy(b.image);

@@ -58,10 +58,8 @@ static void runOnce(const vplPatchSides* sides, const vplView* view, vplImage* i
     start = cpuMs();
     drawOnce(&draw, clip, image);
     t->smooth[run] = cpuMs() - start;
-    const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
-                             .accumulation = VPL_ACCUMULATE_DEFERRED,
-                             .output = VPL_OUTPUT_DEPTH,
-                             .batch = 1};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.output = VPL_OUTPUT_DEPTH;
     start = cpuMs();
     check(vplShadeView(sides->patches->geometry, view, &def, image, NULL));
     t->depth[run] = cpuMs() - start;

@@ -113,11 +113,12 @@ static void measure(const Bench* b, const char* name)
 static double light(const Bench* b, const vplView* view, const vplReflectiveMap* map, vplImage* image)
 {
     const vplShadow none = {0};
-    vplShadeDef def = {.accumulation = VPL_ACCUMULATE_DEFERRED,
-                       .emitters = b->emitters,
-                       .emitterCount = 1,
-                       .shadows = &none,
-                       .emitterMaps = &map};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.accumulation = VPL_ACCUMULATE_DEFERRED;
+    def.emitters = b->emitters;
+    def.emitterCount = 1;
+    def.shadows = &none;
+    def.emitterMaps = &map;
     const double start = cpuMs();
     check(vplShadeView(b->geometry, view, &def, image, NULL));
     return cpuMs() - start;

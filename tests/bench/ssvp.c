@@ -100,7 +100,9 @@ static vplResult shade(void* user, int which)
 {
     const Bench* b = user;
     const Way* way = &ways[which];
-    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.5f, .output = way->output};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.minDistance = 0.5f;
+    def.output = way->output;
     def.accumulation = VPL_ACCUMULATE_INTERLEAVED;
     def.interleave = way->side;
     def.lights = way->whole ? b->wholeLights : b->lights;

@@ -166,22 +166,19 @@ static void makeLights(void)
     MUST(vplParaboloidMaps_Draw(f.paraboloids, f.geometry, places, 2, NULL, NULL));
     f.placementDef = vplDefaultPlacementDef();
     f.placementDef.camera = f.camera;
-    f.shade = (vplShadeDef){.emitters = &f.emitter,
-                            .shadows = &f.shadow,
-                            .emitterCount = 1,
-                            .batch = 1,
-                            .interleave = 1,
-                            .lights = f.shadeLights,
-                            .lightCount = f.shadeLightCount,
-                            .minDistance = 0.2f};
-    f.compensation = (vplCompensationDef){.rayCount = 1,
-                                          .hitLights = 1,
-                                          .emitters = &f.emitter,
-                                          .shadows = &f.shadow,
-                                          .emitterCount = 1,
-                                          .lights = f.shadeLights,
-                                          .lightCount = f.shadeLightCount,
-                                          .reflection = 1};
+    f.shade = vplDefaultShadeDef();
+    f.shade.emitters = &f.emitter;
+    f.shade.shadows = &f.shadow;
+    f.shade.emitterCount = 1;
+    f.shade.lights = f.shadeLights;
+    f.shade.lightCount = f.shadeLightCount;
+    f.shade.minDistance = 0.2f;
+    f.compensation = vplDefaultCompensationDef();
+    f.compensation.emitters = &f.emitter;
+    f.compensation.shadows = &f.shadow;
+    f.compensation.emitterCount = 1;
+    f.compensation.lights = f.shadeLights;
+    f.compensation.lightCount = f.shadeLightCount;
     f.shade.compensation = &f.compensation;
     f.pass = (vplParticlePass){0, 10, 0.5};
 }

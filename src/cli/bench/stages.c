@@ -49,7 +49,7 @@ vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, v
 {
     const bool rays = (stage->flags & RAYS) != 0, direct = (stage->flags & DIRECT) != 0;
     TRY(direct ? needShadow(b) : VPL_SUCCESS);
-    vplShadeDef def = {0};
+    vplShadeDef def = vplDefaultShadeDef();
     def.lighting = stage->lighting;
     def.accumulation = stage->accumulation;
     def.batch = stage->batch;

@@ -62,19 +62,19 @@ vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights
     const bool keller = plan->options.method == VPL_METHOD_KELLER;
     const float distance =
         lights->emitterLightCount > 0 ? areaLightDistance(run->results[VPL_STAGE_GEOMETRY]) : 0;
-    vplCompensationDef def = {.rayCount = raysOf(run, lights),
-                              .hitLights = hitLightsOf(run, lights),
-                              .seed = plan->options.seed,
-                              .emitters = plan->emitters,
-                              .shadows = shadows,
-                              .emitterCount = plan->emitterCount,
-                              .trianglesPerPoint = plan->trianglesPerPoint,
-                              .lights = lights->lights,
-                              .lightCount = lights->count,
-                              .lightRays = plan->options.lights.shadows != VPL_LIGHT_SHADOWS_NONE,
-                              .reflection = 1,
-                              .emitterLightCount = lights->emitterLightCount,
-                              .emitterLightDistance = distance};
+    vplCompensationDef def = vplDefaultCompensationDef();
+    def.rayCount = raysOf(run, lights);
+    def.hitLights = hitLightsOf(run, lights);
+    def.seed = plan->options.seed;
+    def.emitters = plan->emitters;
+    def.shadows = shadows;
+    def.emitterCount = plan->emitterCount;
+    def.trianglesPerPoint = plan->trianglesPerPoint;
+    def.lights = lights->lights;
+    def.lightCount = lights->count;
+    def.lightRays = plan->options.lights.shadows != VPL_LIGHT_SHADOWS_NONE;
+    def.emitterLightCount = lights->emitterLightCount;
+    def.emitterLightDistance = distance;
     def.areaLights = area.lights;
     def.areaLightCount = area.count;
     def.areaLightMinDistance = area.minDistance;

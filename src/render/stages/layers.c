@@ -100,7 +100,10 @@ static vplResult drawSurfaces(const vplRun* run, int layer, vplImage** imageOut)
 {
     const vplPlan* plan = run->plan;
     const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
-    const vplShadeDef def = {.lighting = plan->shading, .output = LAYERS[layer].output, .emission = true};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.lighting = plan->shading;
+    def.output = LAYERS[layer].output;
+    def.emission = true;
     const int count = LAYERS[layer].mean ? vplCountLayerSamples(plan) : 1;
     if (layer == OBJECT && g->objectCount > VPL_MAX_LAYER_INDEX) {
         return vplFail(run->context, VPL_LIMIT, "the scene has %d objects, a layer can number %d",

@@ -88,13 +88,14 @@ vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
     vplFindReflected(mesh->sides, solution->radiosity, reflected);
     vplPatchMesh_ListPatches(mesh, first);
     *light = (KnownLight){mesh, reflected, run->results[VPL_STAGE_VERTEX_LIGHT], patchLight->cells, first};
-    *defOut = (vplGatherDef){.rayCount = run->plan->options.radiosity.gather,
-                             .seed = run->plan->options.seed,
-                             .meet = meetPatch,
-                             .user = light,
-                             .emitters = run->plan->emitters,
-                             .emitterCount = run->plan->emitterCount,
-                             .trianglesPerPoint = run->plan->trianglesPerPoint};
+    *defOut = vplDefaultGatherDef();
+    defOut->rayCount = run->plan->options.radiosity.gather;
+    defOut->seed = run->plan->options.seed;
+    defOut->meet = meetPatch;
+    defOut->user = light;
+    defOut->emitters = run->plan->emitters;
+    defOut->emitterCount = run->plan->emitterCount;
+    defOut->trianglesPerPoint = run->plan->trianglesPerPoint;
     defOut->areaLights = area.lights;
     defOut->areaLightCount = area.count;
     defOut->areaLightMinDistance = area.minDistance;

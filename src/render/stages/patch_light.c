@@ -100,7 +100,6 @@ static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* lig
 {
     const int room = sideCount < CHUNK_SIDES ? sideCount : CHUNK_SIDES;
     const size_t points = (size_t)room * (size_t)run->plan->options.radiosity.lightSamples;
-    const int emitterCount = run->plan->emitterCount;
     Chunk* chunk = vplArena_AllocZero(run->scratch, 1, sizeof *chunk);
     vplSurfacePoint* places = vplArena_Alloc(run->scratch, points, sizeof *places);
     vplRgb* irradiance = vplArena_Alloc(run->scratch, points, sizeof *irradiance);
@@ -111,13 +110,13 @@ static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* lig
     const int chosen = (run->plan->emittersPerPoint + samples - 1) / samples;
     const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
     const int sky = area != NULL ? area->skyCount : 0; // area lights are patches that emit
-    const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
-                             .emitters = run->plan->emitters,
-                             .emitterCount = emitterCount,
-                             .emittersPerPoint = chosen,
-                             .emitterTrees = run->results[VPL_STAGE_EMITTER_TREES],
-                             .areaLights = sky > 0 ? area->lights + (area->count - sky) : NULL,
-                             .areaLightCount = sky};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.emitters = run->plan->emitters;
+    def.emitterCount = run->plan->emitterCount;
+    def.emittersPerPoint = chosen;
+    def.emitterTrees = run->results[VPL_STAGE_EMITTER_TREES];
+    def.areaLights = sky > 0 ? area->lights + (area->count - sky) : NULL;
+    def.areaLightCount = sky;
     for (int first = 0; first < sideCount; first += CHUNK_SIDES) {
         const int left = sideCount - first;
         TRY(lightChunk(run, &def, first, left < CHUNK_SIDES ? left : CHUNK_SIDES, chunk));

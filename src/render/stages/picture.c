@@ -37,11 +37,12 @@ static vplResult addBackground(const vplRun* run, const vplView* view, const vpl
 {
     const bool smooth =
         shown->accumulation >= VPL_ACCUMULATE_DEFERRED; // passes draw surfaces without smooth edges
-    const vplShadeDef def = {.lighting = shown->lighting,
-                             .output = VPL_OUTPUT_BACKGROUND,
-                             .samples = smooth ? shown->samples : 0,
-                             .firstRow = shown->firstRow,
-                             .endRow = shown->endRow};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.lighting = shown->lighting;
+    def.output = VPL_OUTPUT_BACKGROUND;
+    def.samples = smooth ? shown->samples : 0;
+    def.firstRow = shown->firstRow;
+    def.endRow = shown->endRow;
     vplImage* background;
     TRY(vplImage_Create(run->context, image->width, image->height, &background));
     const vplResult result = vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, &def, background, NULL);
@@ -170,23 +171,24 @@ static vplShadeDef describe(const vplRun* run)
     const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
     const vplReflectiveMaps* maps = run->results[VPL_STAGE_REFLECTIVE_MAPS];
     const bool mapped = maps != NULL && o->method == VPL_METHOD_SSVP && !run->plan->emitterRays;
-    return (vplShadeDef){.lighting = run->plan->shading,
-                         .accumulation = o->pipeline.kind,
-                         .output = VPL_SHOWS[o->output.show].output,
-                         .batch = o->pipeline.batch,
-                         .interleave = o->pipeline.interleave,
-                         .cutError = o->pipeline.cutError,
-                         .samples = o->output.antialias,
-                         .minDistance = v != NULL ? v->minDistance : 0,
-                         .particleCount =
-                             o->method == VPL_METHOD_DIRECT ? 1 : vplParticlesOfPass(run->plan, run->pass),
-                         .firstRow = run->firstRow,
-                         .endRow = run->endRow,
-                         .emittersPerPoint = run->plan->emittersPerPoint,
-                         .emitterTrees = run->results[VPL_STAGE_EMITTER_TREES],
-                         .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL,
-                         .progress = run->progress,
-                         .progressUser = run->runner};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.lighting = run->plan->shading;
+    def.accumulation = o->pipeline.kind;
+    def.output = VPL_SHOWS[o->output.show].output;
+    def.batch = o->pipeline.batch;
+    def.interleave = o->pipeline.interleave;
+    def.cutError = o->pipeline.cutError;
+    def.samples = o->output.antialias;
+    def.minDistance = v != NULL ? v->minDistance : 0;
+    def.particleCount = o->method == VPL_METHOD_DIRECT ? 1 : vplParticlesOfPass(run->plan, run->pass);
+    def.firstRow = run->firstRow;
+    def.endRow = run->endRow;
+    def.emittersPerPoint = run->plan->emittersPerPoint;
+    def.emitterTrees = run->results[VPL_STAGE_EMITTER_TREES];
+    def.emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL;
+    def.progress = run->progress;
+    def.progressUser = run->runner;
+    return def;
 }
 
 // The memory of one call of the stage, besides its picture.

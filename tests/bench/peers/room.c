@@ -78,7 +78,8 @@ static void makeGrid(Room* room)
 // Counts pixels that show a surface; rates multiply this by the number of lights.
 static int64_t countCovered(Room* room)
 {
-    vplShadeDef def = {.accumulation = VPL_ACCUMULATE_DEFERRED, .output = VPL_OUTPUT_DEPTH};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.output = VPL_OUTPUT_DEPTH;
     demand(vplShadeView(room->geometry, &room->view, &def, room->image, NULL) == VPL_SUCCESS,
            "the room cannot be drawn");
     int64_t covered = 0;

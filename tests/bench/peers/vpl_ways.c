@@ -6,7 +6,9 @@
 
 static void shade(Room* room, const Row* row, bool direct)
 {
-    vplShadeDef def = {.lighting = row->lighting, .accumulation = row->accumulation};
+    vplShadeDef def = vplDefaultShadeDef();
+    def.lighting = row->lighting;
+    def.accumulation = row->accumulation;
     def.interleave = 4;
     def.minDistance = MIN_DISTANCE;
     def.emitters = room->emitter;
