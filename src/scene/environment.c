@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-enum { COOKIE = 0x56504c39, SKY_WIDTH = 256, SKY_HEIGHT = 128 };
+enum { COOKIE = 0x56504c3a, SKY_WIDTH = 256, SKY_HEIGHT = 128 };
 
 vplEnvironmentDef vplDefaultEnvironmentDef(void)
 {

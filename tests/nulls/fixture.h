@@ -103,4 +103,14 @@ typedef struct Call {
 extern const Call calls[];
 extern const int callCount, functionCount, skippedCount;
 
+// The cookie that a default function sets.
+typedef struct Cookie {
+    const char* def;
+    uint32_t cookie;
+} Cookie;
+
+extern const int defCount;
+
+void findCookies(Cookie* out); // defCount of them
+
 #endif

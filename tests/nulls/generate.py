@@ -4,7 +4,8 @@
 
 Each call has one wrong argument: NULL, a def without its cookie, numbers out of range, structs of NaN. The others come from
 the tables below, by function and name, by type and name, or by type. A pointer gets no NULL where the comment of the
-function says "must not be NULL". A type without a value in the tables is an error, so new functions need one."""
+function says "must not be NULL". A type without a value in the tables is an error, so new functions need one. So is a
+struct vpl...Def that lacks a cookie or a function vplDefault...Def."""
 import re
 import sys
 
@@ -114,6 +115,8 @@ def read_headers(paths):
         for body, name in re.findall(r"typedef struct \w+ \{(.*?)\n\} (\w+);", text, re.S):
             if "cookie;" in body:
                 cookies.add(name)
+            elif name.endswith("Def"):
+                sys.exit(f"generate.py: {name} has no cookie")
         enums.update(re.findall(r"typedef enum (\w+)", text))
         pattern = r"^((?:const )?[a-z]\w*\**) ?(\**)(vpl\w+)\(([^;{}]*?)\);"
         for match in re.finditer(pattern, text, re.M):
@@ -213,9 +216,11 @@ def main():
     names = [f[0] for f in functions]
     print('// Written by tests/nulls/generate.py.\n#include "fixture.h"\n\n#include <limits.h>\n#include <math.h>\n'
           "#include <string.h>\n")
-    for base in sorted(cookies):
-        maker = "vplDefault" + base[3:]
-        if maker in names and base != "vplFramebuffer":
+    makers = {base: "vplDefault" + base[3:] for base in sorted(cookies)}
+    for base, maker in makers.items():
+        if maker not in names:
+            sys.exit(f"generate.py: {base} has no {maker}")
+        if base != "vplFramebuffer":
             print(f"#define static_{base} (({base}[]){{{maker}()}}[0])")
     rows, skipped, called = [], 0, 0
     for name, result, arguments, comment in functions:
@@ -241,6 +246,11 @@ def main():
                             f"{flag(may_be_null(comment, argument))}, {flag(status)}, {flag(known)}, "
                             f"{outputs & ~(1 << i)}}}")
     print("const Call calls[] = {\n    " + ",\n    ".join(rows) + "};")
+    print(f"const int defCount = {len(makers)};\n\nvoid findCookies(Cookie* out)\n{{")
+    for i, (base, maker) in enumerate(makers.items()):
+        size = "1, 1" if base == "vplFramebuffer" else ""
+        print(f'    out[{i}] = (Cookie){{"{base}", {maker}({size}).cookie}};')
+    print("}")
     print(f"const int callCount = {len(rows)}, functionCount = {called}, skippedCount = {skipped};")
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Calls every public function with every wrong argument, each in a process of its own: a crash, a hang of 20 s, a failure
 // without a sentence, an output that a failure changed, and NULL that is accepted though the header does not say so count
-// as failures. The calls are written by generate.py from the headers. Ends with "N passed, N failed".
+// as failures, and two defs with one cookie. The calls are written by generate.py from the headers. Ends with "N passed, N failed".
 #include "fixture.h"
 
 #include <signal.h>
@@ -77,6 +77,26 @@ static bool passes(const Call* call)
     return false;
 }
 
+// Returns whether each def has a cookie of its own: one of another type must be refused. Prints those that have not.
+static bool cookiesDiffer(void)
+{
+    Cookie* cookies = calloc((size_t)defCount, sizeof *cookies);
+    bool differ = cookies != NULL;
+    if (cookies != NULL) {
+        findCookies(cookies);
+    }
+    for (int i = 0; cookies != NULL && i < defCount; i++) {
+        for (int k = 0; k < i; k++) {
+            if (cookies[i].cookie == cookies[k].cookie) {
+                printf("not ok %s and %s have the same cookie\n", cookies[k].def, cookies[i].def);
+                differ = false;
+            }
+        }
+    }
+    free(cookies);
+    return differ;
+}
+
 // nulls [FUNCTION]: all calls, or those of one function.
 int main(int count, char** words)
 {
@@ -86,7 +106,7 @@ int main(int count, char** words)
         return 1;
     }
     makeFixture();
-    int passed = 0, failed = 0;
+    int passed = cookiesDiffer(), failed = !passed;
     for (int i = 0; i < callCount; i++) {
         if (count < 2 || strcmp(words[1], calls[i].function) == 0) {
             *(passes(&calls[i]) ? &passed : &failed) += 1;
