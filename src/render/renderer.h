@@ -144,6 +144,10 @@ vplResult vplRefineTruth(vplRenderer* renderer);
 // *moreOut: the truth is better known now, or pixels at edges are traced, so that the picture is to be judged again.
 vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
 
+// After the truth was asked: traces pixels at edges where that costs little beside the passes so far and is likely to prove the
+// error that was asked for. *moreOut as above.
+vplResult vplTryEdges(vplRenderer* renderer, double asked, bool* moreOut);
+
 // After a pass of path tracing that --method auto has chosen for an error: goes back to virtual lights where the noise of the
 // paths says that they need more rays.
 vplResult vplTurnBack(vplRenderer* renderer, double asked, bool* doneOut);

@@ -12,8 +12,10 @@ typedef struct vplEdgeStep {
     int pixels;      // that are traced
     double noise;    // squared, of the other pixels
     double bias;     // squared, of the other pixels
-    double spread;   // standard error of the truth about the other pixels
-    double variance; // of one path through each
+    double square;   // the whole squared error of the other pixels, at least their noise
+    double spread;   // standard error of the truth about it
+    double variance; // of one path through each, as if paths were independent
+    double mean;     // variance of the mean of as many paths as the truth has, which are spread evenly
 } vplEdgeStep;
 
 // A squared bias that may be chance counts for less.

@@ -265,6 +265,8 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
             *doneOut = true;
         } else if (decides) {
             TRY(vplReconsider(r, asked, doneOut, &more));
+        } else if (r->asked.method == VPL_METHOD_AUTO) {
+            TRY(vplTryEdges(r, asked, &more));
         }
     }
     return VPL_SUCCESS;

@@ -25,6 +25,7 @@ typedef struct State {
     double spread;      // its standard error
     double spent;       // rays of its passes, which are in packets
     double truth;       // rays of the truth
+    double truthPaths;  // through each of its pixels
     double path;        // rays of a path
     double paths;       // squared error of a picture by one ray's worth of paths
     int halvings;       // of the square of pixels that share lights, that are possible
@@ -57,6 +58,7 @@ static State stateOf(const vplRenderer* r)
     s.square = mean > 0 ? fmax(r->judged.square / (mean * mean), s.noise) : 0;
     s.spread = mean > 0 ? r->judged.spread / (mean * mean) : 0;
     s.truth = VPL_PATH_RAY * (double)r->judged.rays;
+    s.truthPaths = vplTruth_Paths(r->truth);
     s.path = VPL_PATH_RAY * r->judged.pathRays;
     s.stuck = r->judged.spread > 0.85 * r->spreadBefore && r->judged.spread > 3 * noiseOfTruth(r);
     return s;
@@ -83,6 +85,24 @@ static double proofOf(const State* s, double spread, double margin)
     return times <= 1 ? 0 : s->stuck ? INFINITY : s->truth * (times - 1);
 }
 
+// The variance of pixels at edges with so many paths each. Twice as many have a third of it, up to as many as the truth has, and
+// half of it beyond; at most as if they were independent.
+static double varianceOf(const State* s, const vplEdgeStep* step, double paths)
+{
+    const double times = s->truthPaths / paths;
+    return fmin(step->variance / paths, step->mean * times * (times > 1 ? sqrt(times) : 1));
+}
+
+// Paths until it is `left`. Powers of two are spread most evenly.
+static double pathsFor(const State* s, const vplEdgeStep* step, double left)
+{
+    double paths = FEWEST_EDGE_PATHS;
+    while (paths < VPL_MAX_SAMPLES && varianceOf(s, step, paths) > left) {
+        paths *= 2;
+    }
+    return paths;
+}
+
 // The least rays for passes and paths: N / m + V / n is `left`, and a m + c n least, for m times the passes and n paths.
 static Way wayOf(const State* s, const vplEdgeStep* step, int halvings, double square)
 {
@@ -96,7 +116,8 @@ static Way wayOf(const State* s, const vplEdgeStep* step, int halvings, double s
     if (!(left > 0)) {
         return way;
     }
-    const double both = sqrt(each * step->noise) + sqrt(cost * step->variance);
+    const double one = fmin(step->variance, step->mean * s->truthPaths);
+    const double both = sqrt(each * step->noise) + sqrt(cost * one);
     way.passes = sqrt(step->noise / each) * both / left;
     if (halvings == 0) {
         way.passes = way.passes > 1       ? fmax(way.passes, 1 + LEAST_MORE)
@@ -105,7 +126,7 @@ static Way wayOf(const State* s, const vplEdgeStep* step, int halvings, double s
     }
     const double rest = left - step->noise / way.passes;
     const double paths = step->pixels == 0 ? 0
-                         : rest > 0        ? fmax(FEWEST_EDGE_PATHS, ceil(step->variance / rest))
+                         : rest > 0        ? pathsFor(s, step, rest)
                                            : INFINITY;
     if (paths < VPL_MAX_SAMPLES) {
         way.paths = (int)paths;
@@ -133,18 +154,26 @@ enum { MOST_TRIES = 2 };
 // Each try that failed leaves a smaller share of the error for the next one.
 static const double SHARE_OF_TRY = 0.7;
 
-static vplResult findWay(vplRenderer* r, const State* s, double asked, Way* wayOut)
+// Steps of pixels at edges; none where they may not be traced, or were in vain too often.
+static vplResult findSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut)
 {
     const vplRenderOptions* o = &r->asked;
-    const vplEdgeStep none = {0, s->noise, s->bias, s->spread, 0};
+    const bool may = o->method == VPL_METHOD_AUTO && o->output.show == VPL_SHOW_PICTURE &&
+                     o->output.aovs == 0 && o->path.edgePixels == 0;
+    *countOut = 0;
+    return may && r->plan->progressive && r->edges == NULL && r->edgeTries < MOST_TRIES
+               ? vplFindEdgeSteps(r, steps, countOut)
+               : VPL_SUCCESS;
+}
+
+static vplResult findWay(vplRenderer* r, const State* s, double asked, Way* wayOut)
+{
+    const vplEdgeStep none = {0, s->noise, s->bias, s->square, s->spread, 0, 0};
     vplEdgeStep steps[VPL_EDGE_STEPS];
     int count = 0;
     double forEdges = asked;
     *wayOut = (Way){.rays = INFINITY};
-    if (r->plan->progressive && o->output.show == VPL_SHOW_PICTURE && o->output.aovs == 0 &&
-        o->path.edgePixels == 0 && r->edgeTries < MOST_TRIES) {
-        TRY(vplFindEdgeSteps(r, steps, &count));
-    }
+    TRY(findSteps(r, steps, &count));
     for (int i = 0; i < r->edgeTries; i++) {
         forEdges *= SHARE_OF_TRY;
     }
@@ -257,6 +286,27 @@ static vplResult traceEdges(vplRenderer* r, const Way* way, bool* moreOut)
     return vplRenderer_TraceEdges(r, way->pixels, way->paths);
 }
 
+// Edges that cost less than this share of the passes are traced before the noise is known well.
+static const double CHEAP = 0.5;
+
+vplResult vplTryEdges(vplRenderer* r, double asked, bool* moreOut)
+{
+    const State s = stateOf(r);
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    Way best = {.rays = CHEAP * s.spent};
+    int count;
+    TRY(findSteps(r, steps, &count));
+    for (int i = 0; i < count; i++) {
+        const double left = asked * asked - steps[i].square - 1.5 * steps[i].spread;
+        const double paths = left > 0 ? pathsFor(&s, &steps[i], 0.5 * left) : VPL_MAX_SAMPLES;
+        const double rays = steps[i].pixels * s.path * paths;
+        if (paths < VPL_MAX_SAMPLES && rays < best.rays) {
+            best = (Way){rays, 0, 1, steps[i].pixels, (int)paths};
+        }
+    }
+    return best.pixels > 0 ? traceEdges(r, &best, moreOut) : VPL_SUCCESS;
+}
+
 // Begins path tracing. Where paths need more rays than foreseen, it turns back to `way`, without the passes that are done.
 static vplResult tracePaths(vplRenderer* r, const State* s, const Way* way, bool* doneOut)
 {
@@ -273,7 +323,7 @@ static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneO
 {
     Way way;
     if (r->plan->progressive && r->done < SURE_PASSES && r->error.total < 2 * asked) {
-        return VPL_SUCCESS;
+        return vplTryEdges(r, asked, moreOut);
     }
     if (r->edges != NULL) {
         return proveEdges(r, s, asked, moreOut);

@@ -52,7 +52,8 @@ typedef struct vplTruthPixel {
     double
         square; // mean square error of its values, times the pixels of the picture that it stands for over all
     double mean;         // of its true values, times the same
-    double pathVariance; // of one path, times the same
+    double pathVariance; // of one path, times the same: as if paths were independent, and by the difference of the
+    double halfVariance; // halves. The smaller of the sums counts.
 } vplTruthPixel;
 
 vplTruthPixel vplTruth_GetPixel(const vplTruth* truth, const vplImage* picture, int index);
