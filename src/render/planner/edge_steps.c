@@ -48,8 +48,12 @@ static vplEdgeStep stepOf(const Bin* above, const Bin* below, double mean, int p
 {
     const double scale = 1 / (mean * mean), bias = fmax(0, below->square - below->noise),
                  spread = sqrt(below->squares);
-    return (vplEdgeStep){above->pixels, scale * below->noise, scale * vplLikelyBias(bias, spread), scale * fmax(below->square, below->noise),
-                         scale * spread, scale * above->paths,
+    return (vplEdgeStep){above->pixels,
+                         scale * below->noise,
+                         scale * vplLikelyBias(bias, spread),
+                         scale * fmax(below->square, below->noise),
+                         scale * spread,
+                         scale * above->paths,
                          scale * above->halves / paths};
 }
 

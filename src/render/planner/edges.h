@@ -28,4 +28,12 @@ void vplEdges_Draw(const vplEdges* edges, vplImage* picture);
 // The variance of a chosen pixel's values, their mean; negative where the pixel is not chosen.
 double vplEdges_VarianceAt(const vplEdges* edges, size_t pixel);
 
+// The squared error that the noise of the chosen pixels leaves in the picture, over all its values, and its standard error.
+typedef struct vplEdgeNoise {
+    double square, spread;
+} vplEdgeNoise;
+
+// All 0 for NULL.
+vplEdgeNoise vplEdges_Noise(const vplEdges* edges, int pixelsOfPicture);
+
 #endif

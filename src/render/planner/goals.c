@@ -180,7 +180,7 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
 {
     double sum = 0;
     const size_t values = 3 * (size_t)picture->width * (size_t)picture->height;
-    r->judged = vplTruth_Judge(r->truth, picture);
+    r->judged = vplTruth_Judge(r->truth, picture, r->edges);
     for (size_t k = 0; k < values; k++) {
         sum += (double)picture->pixels[k];
     }

@@ -197,13 +197,15 @@ int vplTruth_CountPixels(const vplTruth* t)
     return t->paths.count;
 }
 
-vplJudgement vplTruth_Judge(const vplTruth* t, const vplImage* picture)
+vplJudgement vplTruth_Judge(const vplTruth* t, const vplImage* picture, const vplEdges* edges)
 {
     vplJudgement j = {0};
     const double each = t->paths.done, count = t->paths.count;
     double squares = 0, halves = 0;
     for (int i = 0; i < t->paths.count; i++) {
-        const vplTruthPixel p = vplTruth_GetPixel(t, picture, i);
+        vplTruthPixel p = vplTruth_GetPixel(t, picture, i);
+        const size_t place = (size_t)p.y * (size_t)picture->width + (size_t)p.x;
+        p.square = edges != NULL && vplEdges_VarianceAt(edges, place) >= 0 ? 0 : p.square;
         j.square += p.square;
         squares += p.square * p.square;
         j.mean += p.mean;
@@ -214,6 +216,9 @@ vplJudgement vplTruth_Judge(const vplTruth* t, const vplImage* picture)
     j.pathVariance = fmin(j.pathVariance, halves);
     j.spread =
         count > 1 ? sqrt(fmax(0, squares - j.square * j.square / count) * count / (count - 1)) : INFINITY;
+    const vplEdgeNoise noise = vplEdges_Noise(edges, t->pixelCount);
+    j.square += noise.square;
+    j.spread = sqrt(j.spread * j.spread + noise.spread * noise.spread);
     j.pathRays = count > 0 ? (double)j.rays / (2 * each * count) : 0;
     return j;
 }

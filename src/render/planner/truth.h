@@ -3,7 +3,7 @@
 #ifndef VPL_RENDER_PLANNER_TRUTH_H
 #define VPL_RENDER_PLANNER_TRUTH_H
 
-#include "render/stage.h"
+#include "render/planner/edges.h"
 
 typedef struct vplTruth vplTruth;
 
@@ -51,8 +51,9 @@ typedef struct vplTruthPixel {
     int x, y;
     double
         square; // mean square error of its values, times the pixels of the picture that it stands for over all
-    double mean;         // of its true values, times the same
-    double pathVariance; // of one path, times the same: as if paths were independent, and by the difference of the
+    double mean; // of its true values, times the same
+    double
+        pathVariance; // of one path, times the same: as if paths were independent, and by the difference of the
     double halfVariance; // halves. The smaller of the sums counts.
 } vplTruthPixel;
 
@@ -60,7 +61,8 @@ vplTruthPixel vplTruth_GetPixel(const vplTruth* truth, const vplImage* picture, 
 
 int vplTruth_CountPixels(const vplTruth* truth);
 
-// The error of a picture of the same size.
-vplJudgement vplTruth_Judge(const vplTruth* truth, const vplImage* picture);
+// The error of a picture of the same size. That of pixels at edges, which may be NULL, is the noise of their own paths, which are
+// more than those of the truth.
+vplJudgement vplTruth_Judge(const vplTruth* truth, const vplImage* picture, const vplEdges* edges);
 
 #endif
