@@ -124,3 +124,20 @@ TEST(TheErrorHoldsWhereThePlannerTracesEdges, 2)
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
 }
+
+// Few pixels have most of the error; where they are traced, a few passes are enough for the others.
+TEST(TracedEdgesSpareRays, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    vplRenderOptions chosen = edgeOptions(0, "--method auto --passes 0 --max-error 0.03 --seed 2"), paths = chosen;
+    vplRenderStats few, many;
+    paths.method = VPL_METHOD_PATH;
+    vplImage* image = renderScene(scene, &chosen, &few);
+    vplImage_Destroy(renderScene(scene, &paths, &many));
+    if (!(3 * few.rays < many.rays)) {
+        fail_msg("%lld rays of passes, %lld of paths", (long long)few.rays, (long long)many.rays);
+    }
+    assert_true(errorAgainstPaths(scene, image) <= 0.03);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+}
