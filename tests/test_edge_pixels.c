@@ -129,7 +129,8 @@ TEST(TheErrorHoldsWhereThePlannerTracesEdges, 2)
 TEST(TracedEdgesSpareRays, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
-    vplRenderOptions chosen = edgeOptions(0, "--method auto --passes 0 --max-error 0.03 --seed 2"), paths = chosen;
+    vplRenderOptions chosen = edgeOptions(0, "--method auto --passes 0 --max-error 0.03 --seed 2"),
+                     paths = chosen;
     vplRenderStats few, many;
     paths.method = VPL_METHOD_PATH;
     vplImage* image = renderScene(scene, &chosen, &few);

@@ -96,14 +96,16 @@ static double varianceOf(const State* s, const vplEdgeStep* step, double paths)
     return fmin(alone, fmax(most, step->mean * times * (times > 1 ? sqrt(times) : 1)));
 }
 
-// Paths until it is `left`. Powers of two are spread most evenly.
+// Paths through pixels at edges until their variance is well below `left`. Powers of two, and half as many more, are spread most
+// evenly. Of few pixels a handful have most of the variance, which is known badly then.
 static double pathsFor(const State* s, const vplEdgeStep* step, double left)
 {
+    const double goal = step->pixels < 1024 ? 0.5 * left : 0.8 * left;
     double paths = FEWEST_EDGE_PATHS;
-    while (paths < VPL_MAX_SAMPLES && varianceOf(s, step, paths) > left) {
+    while (paths < VPL_MAX_SAMPLES && varianceOf(s, step, 1.5 * paths) > goal) {
         paths *= 2;
     }
-    return paths;
+    return varianceOf(s, step, paths) > goal ? 1.5 * paths : paths;
 }
 
 // The least rays for passes and paths: N / m + V / n is `left`, and a m + c n least, for m times the passes and n paths.
@@ -128,7 +130,7 @@ static Way wayOf(const State* s, const vplEdgeStep* step, int halvings, double s
                                           : 1 + LEAST_MORE;
     }
     const double rest = left - step->noise / way.passes;
-    const double paths = step->pixels == 0 ? 0 : rest > 0 ? pathsFor(s, step, 0.5 * rest) : INFINITY;
+    const double paths = step->pixels == 0 ? 0 : rest > 0 ? pathsFor(s, step, rest) : INFINITY;
     if (paths < VPL_MAX_SAMPLES) {
         way.paths = (int)paths;
         way.rays = each * (way.passes - (halvings == 0)) + cost * paths;
@@ -304,7 +306,7 @@ vplResult vplTryEdges(vplRenderer* r, double asked, bool* moreOut)
     TRY(findSteps(r, steps, &count));
     for (int i = 0; i < count; i++) {
         const double left = asked * asked - steps[i].square - 1.5 * steps[i].spread;
-        const double paths = left > 0 ? pathsFor(&s, &steps[i], 0.5 * left) : VPL_MAX_SAMPLES;
+        const double paths = left > 0 ? pathsFor(&s, &steps[i], left) : VPL_MAX_SAMPLES;
         const double rays = steps[i].pixels * s.path * paths;
         if (paths < VPL_MAX_SAMPLES && rays < best.rays) {
             best = (Way){rays, 0, 1, steps[i].pixels, (int)paths};
