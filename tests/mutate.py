@@ -92,7 +92,7 @@ def lines_run(files, runs):
         count, number, rest = (line.split(':', 2) + ['', ''])[:3]
         if number.strip() == '0':
             file = rest[7:] if rest.startswith('Source:') else file
-        elif file in files and count.strip() not in ('', '-'):
+        elif file in files and number.strip().isdigit() and count.strip() != '-':
             known = runs.setdefault(file, {})
             known[int(number)] = known.get(int(number), False) or count.strip()[0] not in '#='
     for path in (TREE / 'build/cover').rglob('*.gcda'):
