@@ -12,6 +12,7 @@ hour, and build/mutants.json keeps it until src changes. A mutation is judged by
 first. Suites are: the quick tests of each tests/test_*.c, failing allocations, wrong arguments, golden pictures, the parts of
 tests/cli and the corpora of the fuzzers. Slow tests are run where no quick one notices, of suites near the file only.
 SUITES="obj gltf" in the environment runs the named suites, slow tests too, instead of those that the first build found.
+WITHIN=60 ends with CANDIDATE after suites that took so many seconds in the first build: some are judged by reading alone.
 """
 import json, os, random, re, subprocess, sys, time
 from pathlib import Path
@@ -99,8 +100,11 @@ def lines_run(files, runs):
         path.unlink()
 
 
-def measure(files):
-    """Runs everything once: {name: (seconds, {file: {line: whether it ran}})}."""
+def measure(files, source):
+    """Runs everything once: {name: [seconds, {file: {line: whether it ran}}]}, from MAP if it fits the sources."""
+    kept = json.loads(MAP.read_text()) if MAP.exists() else {}
+    if kept.get('source') == source and set(files) <= set(kept['files']):
+        return kept['suites']
     subprocess.run('rm -rf build/cover; mkdir build/cover; cp -a build/obj build/cover', shell=True, cwd=TREE, check=True)
     for path in [path for file in files for path in objects('build/cover/obj', file)]:
         path.unlink()
@@ -111,9 +115,11 @@ def measure(files):
         wrong = run(command, 1000)
         seconds = time.time() - start
         lines_run(files, runs)
+        wrong = wrong and run(all_jobs('build')[name], 1000) # counts that cannot be written are an error on stderr
         print(f'{name}: {seconds:.1f} s', wrong and f'{wrong} without a mutation: left out', flush=True)
         if not wrong:
             result[name] = [seconds, {file: {str(line): ran for line, ran in lines.items()} for file, lines in runs.items()}]
+    MAP.write_text(json.dumps({'source': source, 'files': files, 'suites': result}))
     return result
 
 
@@ -147,13 +153,17 @@ def judge(path, number, text, measured):
              f'tests/test_{name}.c' in SLOW]
     if 'SUITES' in os.environ:
         runs = [(name, [word for word in jobs[name] if word[0] != '-'], 60) for name in os.environ['SUITES'].split()]
-    for count, (name, command, seconds) in enumerate(runs, 1):
+    left = float(os.environ.get('WITHIN', 'inf'))
+    for count, (name, command, seconds) in enumerate(runs):
+        if count > 0 and seconds > left:
+            return 'CANDIDATE', f'{count} of {len(runs)}'
+        left -= seconds
         if not make('-O1', program(command)):
-            return 'not built', count
+            return 'not built', 0
         wrong = run(command, 3 * seconds + 10)
         if wrong:
-            return f'killed by {name}' + (' (too slow)' if wrong == 'too slow' else ''), count
-    return 'SURVIVED' if runs else 'SURVIVED, never run', len(runs)
+            return f'killed by {name}' + (' (too slow)' if wrong == 'too slow' else ''), count + 1
+    return 'SURVIVED' if runs else 'SURVIVED, no suite runs it', len(runs)
 
 
 def main():
@@ -168,10 +178,7 @@ def main():
     dice.shuffle(mutations)
     mutations = [m for m in list(enumerate(mutations))[FIRST:] if not m[1][0].startswith('src/cli/bench/')]
     source = subprocess.check_output(['git', 'rev-parse', 'HEAD:src'], cwd=TREE, text=True).strip()
-    kept = json.loads(MAP.read_text()) if MAP.exists() else {}
-    if kept.get('source') != source:
-        kept = {'source': source, 'suites': measure(sorted({m[1][0] for m in mutations[:2 * COUNT]}))}
-        MAP.write_text(json.dumps(kept))
+    measured = measure(sorted({m[1][0] for m in mutations[:2 * COUNT]}), source)
     killed = counted = 0
     for number, (path, line, column, old, new) in mutations:
         start, file, text = time.time(), TREE / path, (TREE / path).read_text()
@@ -182,7 +189,7 @@ def main():
         verdict, count = 'not built', 0
         if before and make('-O1', *(str(name.relative_to(TREE)) for name in before)):
             same = all(name.read_bytes() == bits for name, bits in before.items())
-            verdict, count = ('same code', 0) if same else judge(path, line, lines, kept['suites'])
+            verdict, count = ('same code', 0) if same else judge(path, line, lines, measured)
         file.write_text(text)
         for name, bits in before.items():
             name.write_bytes(bits)
