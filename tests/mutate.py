@@ -9,7 +9,7 @@ skipped and not counted.
 
 Works on a clone of HEAD in build/mutants. A first build counts which lines every suite runs; this takes a quarter of an
 hour, and build/mutants.json keeps it until src changes. A mutation is judged by the suites that run its line only, the fastest
-first. Suites are: the quick tests of each tests/test_*.c, failing allocations, wrong arguments, golden pictures, the parts of
+and likeliest first. Suites are: the quick tests of each tests/test_*.c, failing allocations, wrong arguments, golden pictures, the parts of
 tests/cli and the corpora of the fuzzers. Slow tests are run where no quick one notices, of suites near the file only.
 SUITES="obj gltf" in the environment runs the named suites, slow tests too, instead of those that the first build found.
 WITHIN=60 ends with CANDIDATE after suites that took so many seconds in the first build: some are judged by reading alone.
@@ -147,7 +147,7 @@ def judge(path, number, text, measured):
     """The verdict on the mutation that the tree has now, and how many suites were run."""
     jobs, likely = all_jobs('build'), near(path, measured)
     names = [name for name, (_, runs) in measured.items() if runs_line(runs.get(path, {}), text, number)]
-    names.sort(key=lambda name: measured[name][0] * (0.2 if name in likely else 1))
+    names.sort(key=lambda name: measured[name][0] * (0.05 if name == 'golden' else 0.2 if name in likely else 1))
     runs = [(name, jobs[name], measured[name][0]) for name in names]
     runs += [(f'{name}, slow', [word for word in jobs[name] if word[0] != '-'], 120) for name in names if name in likely and
              f'tests/test_{name}.c' in SLOW]
