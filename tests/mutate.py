@@ -158,7 +158,7 @@ def judge(path, number, text, measured):
         if count > 0 and seconds > left:
             return 'CANDIDATE', f'{count} of {len(runs)}'
         left -= seconds
-        if not make('-O1', program(command)):
+        if not make('', program(command)):
             return 'not built', 0
         wrong = run(command, 3 * seconds + 10)
         if wrong:
@@ -172,7 +172,7 @@ def main():
         subprocess.run(['git', 'clone', '-q', ROOT, TREE], check=True)
     subprocess.run('git fetch -q origin HEAD && git reset -q --hard FETCH_HEAD', shell=True, cwd=TREE, check=True)
     SLOW = subprocess.run(['git', 'grep', '-l', 'SLOW)', 'tests/'], cwd=TREE, capture_output=True, text=True).stdout.split()
-    assert make('-O1', *{program(command) for command in all_jobs('build').values()})
+    assert make('', *{program(command) for command in all_jobs('build').values()})
     dice = random.Random(SEED)
     mutations = [dice.choice(found) for found in sites()]
     dice.shuffle(mutations)
@@ -187,7 +187,7 @@ def main():
         code = lines[line][:column] + new + lines[line][column + len(old):]
         file.write_text('\n'.join(lines[:line] + [code] + lines[line + 1:]))
         verdict, count = 'not built', 0
-        if before and make('-O1', *(str(name.relative_to(TREE)) for name in before)):
+        if before and make('', *(str(name.relative_to(TREE)) for name in before)):
             same = all(name.read_bytes() == bits for name, bits in before.items())
             verdict, count = ('same code', 0) if same else judge(path, line, lines, measured)
         file.write_text(text)
