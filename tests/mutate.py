@@ -4,7 +4,7 @@
 
 tests/mutate.py [COUNT [FIRST [SEED]]]: default 200 0 1. Judges COUNT mutations, from number FIRST on. A number and a seed
 mean the same mutation of the same sources. src/cli/bench, which measures, is left out. A mutation is killed if a test
-fails, crashes or takes more than three times its time. Mutations that do not compile, or compile to the same code, are
+fails, crashes or takes longer than in the first build, which is three times as slow. Mutations that do not compile, or compile to the same code, are
 skipped and not counted.
 
 Works on a clone of HEAD in build/mutants. A first build counts which lines every suite runs; this takes a quarter of an
@@ -160,7 +160,7 @@ def judge(path, number, text, measured):
         left -= seconds
         if not make('', program(command)):
             return 'not built', 0
-        wrong = run(command, 3 * seconds + 10)
+        wrong = run(command, seconds + 10)
         if wrong:
             return f'killed by {name}' + (' (too slow)' if wrong == 'too slow' else ''), count + 1
     return 'SURVIVED' if runs else 'SURVIVED, no suite runs it', len(runs)

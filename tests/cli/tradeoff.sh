@@ -64,6 +64,10 @@ done >"$scratch/commands"
 equals TradeoffCommandsMakeTheirPictures "" "$(cat "$scratch/commands")"
 
 html=$report/report.html
+# The plot of the clamp has two panels: errors are percents, energies are ratios.
+sed -n '/>error<\/text>/,/>energy: all/p' "$html" >"$scratch/errors"
+check ClampHasErrors grep -q 'class="grid".* %</text>' "$scratch/errors"
+equals ClampErrorsArePercents 0 "$(grep 'class="grid"' "$scratch/errors" | grep -vc ' %</text>')"
 check ReportAnswersTheQuestion grep -qE '5 % error (costs|was not reached|cannot be judged)' "$html"
 for limit in 20 10 5 2 1; do
     check "ReportHasARowFor_$limit" grep -q "<th>$limit %</th>" "$html"
