@@ -14,7 +14,7 @@ tests/cli and the corpora of the fuzzers. Slow tests are run where no quick one 
 SUITES="obj gltf" in the environment runs the named suites, slow tests too, instead of those that the first build found.
 WITHIN=60 ends with CANDIDATE after suites that took so many seconds in the first build: some are judged by reading alone.
 """
-import json, os, random, re, subprocess, sys, time
+import itertools, json, os, random, re, subprocess, sys, time
 from pathlib import Path
 
 COUNT, FIRST, SEED = [int(word) for word in sys.argv[1:]] + [200, 0, 1][len(sys.argv) - 1:]
@@ -147,23 +147,21 @@ def judge(path, number, text, measured):
     """The verdict on the mutation that the tree has now, and how many suites were run."""
     jobs, likely = all_jobs('build'), near(path, measured)
     names = [name for name, (_, runs) in measured.items() if runs_line(runs.get(path, {}), text, number)]
-    names.sort(key=lambda name: measured[name][0] * (0.05 if name == 'golden' else 0.2 if name in likely else 1))
+    names.sort(key=lambda name: measured[name][0] * (0.05 if name == 'golden' or name in likely else 1))
     runs = [(name, jobs[name], measured[name][0]) for name in names]
     runs += [(f'{name}, slow', [word for word in jobs[name] if word[0] != '-'], 120) for name in names if name in likely and
              f'tests/test_{name}.c' in SLOW]
     if 'SUITES' in os.environ:
         runs = [(name, [word for word in jobs[name] if word[0] != '-'], 60) for name in os.environ['SUITES'].split()]
-    left = float(os.environ.get('WITHIN', 'inf'))
+    left, all_runs = float(os.environ.get('WITHIN', 'inf')), len(runs)
+    runs = [r for r, spent in zip(runs, itertools.accumulate(r[2] for r in runs)) if spent <= left or r == runs[0]]
     for count, (name, command, seconds) in enumerate(runs):
-        if count > 0 and seconds > left:
-            return 'CANDIDATE', f'{count} of {len(runs)}'
-        left -= seconds
         if not make('', program(command)):
             return 'not built', 0
         wrong = run(command, seconds + 10)
         if wrong:
             return f'killed by {name}' + (' (too slow)' if wrong == 'too slow' else ''), count + 1
-    return 'SURVIVED' if runs else 'SURVIVED, no suite runs it', len(runs)
+    return 'CANDIDATE' if len(runs) < all_runs else 'SURVIVED' if runs else 'SURVIVED, no suite runs it', len(runs)
 
 
 def main():

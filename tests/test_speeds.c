@@ -145,6 +145,7 @@ TEST(PredictedTimeGrowsWithTheWork, 1)
                 {"keller", "size", "64x36", "640x360", 10},
                 {"direct", "size", "64x36", "640x360", 10},
                 {"path", "size", "64x36", "640x360", 10},
+                {"keller", "supersample", "1", "4", 3},
                 {"keller", "passes", "1", "10", 5},
                 {"ssvp", "rsm-size", "64", "2048", 1}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -164,6 +164,8 @@ TEST_ALONE(TimesAndSharesReadWell)
     }
     assert_string_equal(formatPercent(0.0083).text, "0.83 %");
     assert_string_equal(formatPercent(0.142).text, "14.2 %");
+    assert_string_equal(formatPercent(0.9994).text, "99.9 %");
+    assert_string_equal(formatPercent(0.9995).text, "100 %");
     assert_string_equal(formatPercent(1.3).text, "130 %");
 }
 
