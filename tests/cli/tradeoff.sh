@@ -68,6 +68,10 @@ html=$report/report.html
 sed -n '/>error<\/text>/,/>energy: all/p' "$html" >"$scratch/errors"
 check ClampHasErrors grep -q 'class="grid".* %</text>' "$scratch/errors"
 equals ClampErrorsArePercents 0 "$(grep 'class="grid"' "$scratch/errors" | grep -vc ' %</text>')"
+# Below it each distance is told once.
+grep -oE 'x="[0-9.]*" y="[0-9]*" text-anchor="middle">[0-9.e-]* m[ <]' "$html" | cut -d'"' -f2 >"$scratch/distances"
+check ClampHasDistances test "$(wc -l <"$scratch/distances")" -ge 3
+equals ClampTellsEachDistanceOnce "" "$(sort "$scratch/distances" | uniq -d)"
 check ReportAnswersTheQuestion grep -qE '5 % error (costs|was not reached|cannot be judged)' "$html"
 for limit in 20 10 5 2 1; do
     check "ReportHasARowFor_$limit" grep -q "<th>$limit %</th>" "$html"
