@@ -114,7 +114,8 @@ TEST(VerticesAreFoundOnEdgesOfAnyDirection, 1)
         assert_int_equal(vplEdgeVertices_Create(scratch, patches, &edges), VPL_SUCCESS);
         assert_int_equal(vplEdgeVertices_Find(&edges, positionAt(patches, p[0]), positionAt(patches, p[1])),
                          (int)positionAt(patches, p[4])); // 3 of 5 is nearer to the middle than 1
-        assert_int_equal(vplEdgeVertices_Find(&edges, positionAt(patches, p[0]), positionAt(patches, p[2])), -1);
+        assert_int_equal(vplEdgeVertices_Find(&edges, positionAt(patches, p[0]), positionAt(patches, p[2])),
+                         -1);
         vplArena_Destroy(scratch);
         vplPatches_Destroy(patches);
         vplGeometry_Destroy(g);

@@ -439,3 +439,21 @@ TEST(SmallErrorsAreNotReachedThroughCoarsePasses, 1)
     }
     vplScene_Destroy(scene);
 }
+
+// Lights are those of one whole pass: what ends a render and how its passes grow does not matter to them.
+TEST(LightsAreMadeWhereOnlyTheErrorEndsARender, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    vplRenderOptions o = plainOptions();
+    vplLightSet *growing, *plain;
+    o.method = VPL_METHOD_KELLER;
+    o.particles.count = 100;
+    assert_int_equal(vplMakeLights(scene, &o, &plain), VPL_SUCCESS);
+    o.stop.maxError = 0.1f;
+    o.stop.growFrom = 10;
+    assert_int_equal(vplMakeLights(scene, &o, &growing), VPL_SUCCESS);
+    assert_int_equal(growing->lightCount, plain->lightCount);
+    vplLightSet_Destroy(growing);
+    vplLightSet_Destroy(plain);
+    vplScene_Destroy(scene);
+}
