@@ -47,6 +47,8 @@ for name in setting family sweeps on_front seed method particles reflectivity sa
     ssim flip psnr over_front energy_ratio max_difference cpu_ms total_ms peak_bytes ms_shading command; do
     check "TradeoffHas_$name" test -n "$(column "$csv" $name)"
 done
+equals TradeoffMeasuresItsSweepsOnly "direct min-distance pipeline sampler" \
+    "$(column "$csv" sweeps | tr ' ' '\n' | sort -u | tr '\n' ' ' | sed 's/^ *//;s/ $//')"
 equals TradeoffSeeds "1 2" "$(column "$csv" seed | sort -u | tr '\n' ' ' | sed 's/ $//')"
 equals TradeoffSamplers "auto halton hammersley random" "$(column "$csv" sampler | sort -u | tr '\n' ' ' | sed 's/ $//')"
 for name in setting seed image_hash error rmse relmse energy_ratio virtual_lights command; do
