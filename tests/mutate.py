@@ -4,15 +4,15 @@
 
 tests/mutate.py [COUNT [FIRST [SEED]]]: default 200 0 1. Judges COUNT mutations, from number FIRST on. A number and a seed
 mean the same mutation of the same sources. src/cli/bench, which measures, is left out. A mutation is killed if a test
-fails, crashes or takes longer than in the first build, which is three times as slow. Mutations that do not compile, or compile to the same code, are
-skipped and not counted.
+fails, crashes or takes 10 s longer than in the first build, which is about three times as slow. Mutations that do not
+compile, or compile to the same code, are skipped and not counted: all of src/mpi, src/windows and src/image/exr.c, too.
 
-Works on a clone of HEAD in build/mutants. A first build counts which lines every suite runs; this takes a quarter of an
-hour, and build/mutants.json keeps it until src changes. A mutation is judged by the suites that run its line only, the fastest
-and likeliest first. Suites are: the quick tests of each tests/test_*.c, failing allocations, wrong arguments, golden pictures, the parts of
-tests/cli and the corpora of the fuzzers. Slow tests are run where no quick one notices, of suites near the file only.
+Works on a clone of HEAD in build/mutants. A first build counts which lines every suite runs; this takes half an hour, and
+build/mutants.json keeps it until src changes. A mutation is judged by the suites that run its line only, the likeliest and
+fastest first. Suites are: the quick tests of each tests/test_*.c, failing allocations, wrong arguments, golden pictures,
+the parts of tests/cli and the corpora of the fuzzers. Where no quick test notices, slow ones near the file follow.
 SUITES="obj gltf" in the environment runs the named suites, slow tests too, instead of those that the first build found.
-WITHIN=60 ends with CANDIDATE after suites that took so many seconds in the first build: some are judged by reading alone.
+WITHIN=60 ends with CANDIDATE after suites that took so many seconds in the first build: the rest is not tried.
 """
 import itertools, json, os, random, re, subprocess, sys, time
 from pathlib import Path
@@ -124,13 +124,13 @@ def measure(files, source):
 
 
 def runs_line(runs, text, number):
-    """Whether a suite ran a line. Of one without code of its own, the nearest lines of the function count; of tables, the file."""
+    """Whether a suite ran a line. For one without code, the nearest lines of its function count; for tables, the file."""
     start = max((n for n in range(number + 1) if text[n].startswith(('{', '}'))), default=0)
     end = min((n for n in range(number, len(text)) if text[n].startswith('}')), default=number)
     if not text[start].startswith('{'):
         return any(runs.values())
     above = next((n for n in range(number, start, -1) if str(n + 1) in runs), number)
-    below = next((n for n in range(number, end) if str(n + 1) in runs), number)
+    below = next((n for n in range(number, end + 1) if str(n + 1) in runs), number)
     return runs.get(str(above + 1), False) or runs.get(str(below + 1), False)
 
 

@@ -74,6 +74,9 @@ done
 for show in depth normals shadow-map shadow-factor overlay; do
     equals "OtherStagesAreNot_$show" "$(displayed --show $show --exposure 0 --tonemap none)" "$(displayed --show $show)"
 done
+for show in depth normals shadow-map shadow-factor; do
+    equals "ExposureIsForLightOnly_$show" "$(displayed --show $show --exposure 3)" "$(displayed --show $show)"
+done
 for map in none reinhard aces agx; do
     displayed --tonemap $map
 done | sort -u >"$scratch/maps"
