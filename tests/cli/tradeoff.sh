@@ -78,6 +78,7 @@ check ReportAnswersTheQuestion grep -qE '5 % error (costs|was not reached|cannot
 for limit in 20 10 5 2 1; do
     check "ReportHasARowFor_$limit" grep -q "<th>$limit %</th>" "$html"
 done
+check PlotHasTheBase grep -q "<title>the base: " "$report/tradeoff.svg"
 check ReportHasPictures grep -q 'src="data:image/png;base64,iVBORw0KGgo' "$html"
 check ReportNeedsNoOtherFile test -z "$(grep -oE '(src|href)="[^"]*' "$html" | grep -v '^src="data:image/png;base64,')"
 check ReportNeedsNoNetwork test -z "$(grep -oE '<script [^>]*|<link|@import|url\(|fetch\(|XMLHttp|https?://[^"]*' "$html" | grep -v 'http://www.w3.org/2000/svg')"
