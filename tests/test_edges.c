@@ -2,8 +2,11 @@
 // Tests of coverage antialiasing: pictures are near those of whole renders per sample, only pixels at edges
 // and at rims of shadows change, and bits are the same everywhere.
 #include "scenes.h"
+#include "shapes.h"
 
 #include "math/vec.h"
+#include "shading/edges.h"
+#include "shading/facet_cache.h"
 
 #include <stdlib.h>
 
@@ -277,4 +280,40 @@ TEST(StagesAndPassesAreNotSmoothed, 1)
     o.output.antialias = VPL_MAX_SAMPLES_PER_PIXEL + 1;
     assert_int_equal(vplRender(scene, &o, &(vplImage*){NULL}, NULL), VPL_INVALID_ARGUMENT);
     vplScene_Destroy(scene);
+}
+
+// Whichever samples show a surface, it is lit at the one of them that is nearest to the mean of all.
+TEST(SurfacesAreLitAtTheMiddleOfTheirSamples, 1)
+{
+    enum { COUNT = 8 };
+    vplGeometry* g = clutter(context, 0);
+    const vplView view = {.width = 1, .height = 1, .scaleX = 1, .scaleY = 1, .forward = vplVec(0, 0, -1)};
+    const vplShadeDef def = vplDefaultShadeDef();
+    const vplShading shading = vplShading_Make(g, &view, &def);
+    vplFacetCache cache;
+    vplFacetCache_Clear(&cache);
+    int32_t shown[COUNT];
+    vplTile tile = {.sampleCount = COUNT};
+    for (uint32_t set = 1; set < 1u << COUNT; set++) {
+        double x = 0, y = 0, least = INFINITY;
+        for (int i = 0; i < COUNT; i++) {
+            tile.samples[i] = &shown[i];
+            shown[i] = set >> i & 1 ? 0 : -1;
+            x += (set >> i & 1) * (double)vplSubPixel_OfSample(i, COUNT).x / __builtin_popcount(set);
+            y += (set >> i & 1) * (double)vplSubPixel_OfSample(i, COUNT).y / __builtin_popcount(set);
+        }
+        vplEdgePixel pixel = {.triangle = -1};
+        vplFindEdges(&shading, &tile, 0, &cache, &pixel);
+        assert_int_equal(pixel.count, 1);
+        const int named = pixel.others[0].sample;
+        assert_true(set >> named & 1);
+        double away[COUNT];
+        for (int i = 0; i < COUNT; i++) {
+            const vplSubPixel at = vplSubPixel_OfSample(i, COUNT);
+            away[i] = hypot(at.x - x, at.y - y);
+            least = set >> i & 1 ? fmin(least, away[i]) : least;
+        }
+        assert_true(away[named] <= least + 1e-9);
+    }
+    vplGeometry_Destroy(g);
 }

@@ -259,6 +259,21 @@ TEST_ALONE(CamerasLookAlongTheirNode)
     closeDesk(&d);
 }
 
+// The light at the camera gives surfaces at the middle of the mesh, (0.5, 0.5, 0), that face it the irradiance pi.
+TEST_ALONE(TheLightAtTheCameraLightsTheMesh)
+{
+    Blob blob = {.size = 0};
+    addFloats(&blob, POINTS, 9);
+    Desk d;
+    openDesk(&d);
+    vplScene* scene = loadNodes(&d, &blob, "{\"camera\":0,\"translation\":[3,0,8]},{\"camera\":1}", CAMERA);
+    const vplEmitterDef* light = vplScene_GetEmitter(scene, 0);
+    assertPoint(light->position, 3, 0, 8);
+    assertAround((double)light->intensity.r / (2.5 * 2.5 + 0.5 * 0.5 + 8 * 8), VPL_PI, 1e-5);
+    vplScene_Destroy(scene);
+    closeDesk(&d);
+}
+
 TEST_ALONE(LightsAreConvertedToWatts)
 {
     static const char lights[] = "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\","

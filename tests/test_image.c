@@ -3,6 +3,7 @@
 #include "test.h"
 
 #include "base/context.h"
+#include "image/draw.h"
 #include "image/srgb.h"
 
 #include <float.h>
@@ -361,4 +362,24 @@ TEST_ALONE(CodesByTableAreThoseOfTheFormula)
         }
         assert_true(vplSrgb_Code(table.next[k]) == k + 1 && vplSrgb_Code(nextafterf(table.next[k], 0)) == k);
     }
+}
+
+static vplRgb greyOf(float t)
+{
+    return (vplRgb){t, t, t};
+}
+
+// Its colours go evenly from that of nothing at the left end to that of the largest value at the right end.
+TEST(AColourBarShowsAllColours, 1)
+{
+    enum { WIDTH = 321 };
+    vplImage* image;
+    assert_int_equal(vplImage_Create(context, WIDTH, 40, &image), VPL_SUCCESS);
+    vplColourBar_Draw(image, 10, 5, greyOf);
+    for (int x = 0; x < WIDTH; x++) {
+        const float* top = &image->pixels[3 * (12 * WIDTH + x)];
+        assert_true(fabsf(top[0] - (float)x / (WIDTH - 1)) < 1e-6f && top[1] == top[0] && top[2] == top[0]);
+        assert_true(image->pixels[3 * (11 * WIDTH + x)] == 0);
+    }
+    vplImage_Destroy(image);
 }

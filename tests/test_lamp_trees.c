@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of trees of emitters as pictures use them: triangles that emit, the stage that makes trees, and their memory.
+#include "geometry/emitter_tree.h"
 #include "geometry/triangle.h"
 #include "lights/light_set.h"
 #include "path_scenes.h"
@@ -215,6 +216,34 @@ TEST(EachFaceThatEmitsHasAPoint, 1)
     assert_int_equal(total, count);
     assert_true(most > 10);
     assertNear(power, vplEmission_Power(e), 1e-5 * power, "power", 0);
+    vplEmission_Destroy(e);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+}
+
+// Without places, a triangle is chosen by its power: of one radiance, by its area.
+TEST(PowerAloneChoosesTrianglesByArea, 1)
+{
+    vplScene* scene = hall(context, LAMPS, 0);
+    vplGeometry* g;
+    vplEmission* e;
+    vplEmitterTree* tree;
+    vplArena* arena = vplArena_Create(context);
+    double area = 0;
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    assert_int_equal(vplEmission_Create(g, NULL, 0, &e), VPL_SUCCESS);
+    const int first = e->firstTriangle, end = first + 2 * LAMPS;
+    assert_int_equal(vplEmitterTree_Create(arena, e, first, end, &tree), VPL_SUCCESS);
+    vplEmitterTree_ForgetPlaces(tree);
+    for (int i = first; i < end; i++) {
+        area += vplGeometry_TriangleArea(g, e->sources[i].triangle);
+    }
+    for (int i = first; i < end; i++) {
+        const double share = vplGeometry_TriangleArea(g, e->sources[i].triangle) / area;
+        const vplVec3 from = vplVec(0, 0, 0.9f), normal = vplVec(0, 0, -1);
+        assertNear(vplEmitterTree_Probability(tree, from, normal, i) / share, 1, 1e-5, "share", i);
+    }
+    vplArena_Destroy(arena);
     vplEmission_Destroy(e);
     vplGeometry_Destroy(g);
     vplScene_Destroy(scene);

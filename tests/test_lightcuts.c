@@ -190,6 +190,7 @@ TEST(NoErrorIsTheSumOfAllLights, 2)
     vplImage* truth = renderScene(scene, &o, NULL);
     assert_true(stats.virtualLights > 40000 && stats.largestCut > 36000);
     assert_true(stats.largestCut <= stats.virtualLights);
+    assert_true(stats.cutPixels == 12 * 12 && stats.lightEvaluations <= stats.largestCut * stats.cutPixels);
     for (int i = 0; i < 3 * 12 * 12; i++) {
         const double wanted = (double)truth->pixels[i];
         assertNear((double)image->pixels[i], wanted, 3e-6 * wanted, "radiance", i);

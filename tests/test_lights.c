@@ -463,3 +463,32 @@ TEST(SimulationRefusesWhatItCannotShoot, 1)
     vplLightSet_Destroy(set);
     vplGeometry_Destroy(cube);
 }
+
+// A seed shifts all values of one dimension by the same amount, and each dimension by another one.
+TEST_ALONE(EveryDimensionOfAParticleHasAShiftOfItsOwn)
+{
+    enum { STEPS = 8 };
+    vplParticleDef def = vplDefaultParticleDef();
+    def.sampler = VPL_SAMPLER_HALTON;
+    const vplSampleSource plain = vplSampleSource_Make(&def);
+    def.seed = 7;
+    const vplSampleSource seeded = vplSampleSource_Make(&def);
+    double shift[2 * STEPS];
+    for (int step = 0; step < STEPS; step++) {
+        for (int particle = 0; particle < 3; particle++) {
+            float a[2], b[2];
+            vplSampleSource_Direction(&plain, particle, step, &a[0], &a[1]);
+            vplSampleSource_Direction(&seeded, particle, step, &b[0], &b[1]);
+            for (int k = 0; k < 2; k++) {
+                const double by = (double)b[k] - (double)a[k], turned = by < 0 ? by + 1 : by;
+                shift[2 * step + k] = particle == 0 ? turned : shift[2 * step + k];
+                assertNear(turned, shift[2 * step + k], 1e-5, "shift of a particle", particle);
+            }
+        }
+        for (int d = 0; d < 2 * step + 2; d++) {
+            for (int other = 0; other < d; other++) {
+                assert_true(fabs(shift[d] - shift[other]) > 1e-5);
+            }
+        }
+    }
+}

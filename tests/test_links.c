@@ -2,6 +2,7 @@
 // Tests of hierarchical radiosity's links against all pairs and against known solutions.
 #include "scenes.h"
 
+#include "radiosity/links/links.h"
 #include "base/hash.h"
 #include "math/vec.h"
 
@@ -349,6 +350,23 @@ TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
     // Measured: 3.2 times the links and 2.3 times the rays, of which 32 per side are the side's own; 8.7 and 3.7 kB
     // per side.
     assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 5 * rays[0]);
+}
+
+// Judging some pairs of each level tells how much memory all links take.
+TEST(TheEstimateOfLinksHolds, 2)
+{
+    for (int k = 0; k < 2; k++) {
+        Room room;
+        const vplLinkDef def = vplDefaultLinkDef();
+        double held, scratch;
+        openRoom(&room, boxInRoom(context), k ? 2000 : 300);
+        assert_int_equal(vplLinks_EstimateBytes(room.sides, &def, &held, &scratch), VPL_SUCCESS);
+        const size_t before = vplContext_GetBytes(context);
+        linkRoom(&room, &def);
+        const double taken = (double)(vplContext_GetBytes(context) - before);
+        assertNear(held / taken, 1, 0.15, "share of the memory", k);
+        closeRoom(&room);
+    }
 }
 
 // ---- extremes

@@ -79,6 +79,49 @@ TEST_ALONE(HangingVerticesAreThoseOfTheTable)
     freeTable(&t);
 }
 
+static uint32_t positionAt(const vplPatches* patches, vplVec3 p)
+{
+    for (int i = 0; i < patches->positionCount; i++) {
+        if (same(patches->positions[i], p)) {
+            return (uint32_t)i;
+        }
+    }
+    fail_msg("no vertex at (%g, %g, %g)", (double)p.x, (double)p.y, (double)p.z);
+    return 0;
+}
+
+// Edges of any length along each axis, between a large triangle and three small ones: the vertex nearest to the middle is found.
+TEST(VerticesAreFoundOnEdgesOfAnyDirection, 1)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        vplVec3 p[7] = {{0, 0, 0}, {5, 0, 0}, {0, 3, 0}, {1, 0, 0}, {3, 0, 0}, {2, -1, 0}};
+        const int corners[4][3] = {{0, 1, 2}, {5, 3, 0}, {5, 4, 3}, {5, 1, 4}};
+        vplScene* scene = sceneOf(context, 0.5f);
+        Shape shape = {0};
+        for (int i = 0; i < 6; i++) {
+            const vplVec3 q = p[i];
+            p[i] = axis == 0 ? q : axis == 1 ? vplVec(q.z, q.x, q.y) : vplVec(q.y, q.z, q.x);
+        }
+        for (int i = 0; i < 4; i++) {
+            addTriangle(&shape, p[corners[i][0]], p[corners[i][1]], p[corners[i][2]]);
+        }
+        addShape(scene, &shape, false, NULL);
+        freeShape(&shape);
+        vplGeometry* g = buildGeometry(scene);
+        vplPatches* patches = openPatches(g, 100, 0);
+        vplArena* scratch = vplArena_Create(context);
+        vplEdgeVertices edges;
+        assert_int_equal(vplEdgeVertices_Create(scratch, patches, &edges), VPL_SUCCESS);
+        assert_int_equal(vplEdgeVertices_Find(&edges, positionAt(patches, p[0]), positionAt(patches, p[1])),
+                         (int)positionAt(patches, p[4])); // 3 of 5 is nearer to the middle than 1
+        assert_int_equal(vplEdgeVertices_Find(&edges, positionAt(patches, p[0]), positionAt(patches, p[2])),
+                         -1);
+        vplArena_Destroy(scratch);
+        vplPatches_Destroy(patches);
+        vplGeometry_Destroy(g);
+    }
+}
+
 // Makes the mesh of a closed surface in patches of very different sizes, from random bisections.
 static vplPatchMesh* unevenMesh(vplContext* context, bool ball, bool smooth, int rounds, uint64_t seed,
                                 OpenFcn* open)

@@ -3,6 +3,8 @@
 // number of threads.
 #include "scenes.h"
 
+#include "base/arena.h"
+#include "lights/placement.h"
 #include "math/vec.h"
 
 #include <stdlib.h>
@@ -36,6 +38,33 @@ static float worthOf(const vplGeometry* g, const vplVirtualLight* light, const v
         fail_msg("%s", takeMessage());
     }
     return worth;
+}
+
+// A picture four times as wide as high, 4 m above a floor with 90 degrees from top to bottom: 16 m to either side, 4 m up
+// and down, up to the outermost cells.
+TEST(PointsOfTheViewReachTheSidesOfThePicture, 2)
+{
+    vplGeometry* floor = floorQuad(context, vplVec(0, 0, 0), 50, 0.25f);
+    vplArena* arena = vplArena_Create(context);
+    vplPlacementDef def = narrowDef();
+    def.camera.fovY = VPL_PI / 2;
+    def.pointCount = 4096;
+    def.width = 400;
+    def.height = 100;
+    const vplViewBlock* blocks;
+    int count;
+    double x = 0, z = 0;
+    assert_int_equal(vplSampleView(floor, &def, arena, &blocks, &count), VPL_SUCCESS);
+    for (int i = 0; i < count; i++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            x = fmax(x, fabs((double)blocks[i].surface.px[l]));
+            z = fmax(z, fabs((double)blocks[i].surface.pz[l]));
+        }
+    }
+    assertNear(x, 16, 0.3, "half the width", 0);
+    assertNear(z, 4, 0.1, "half the height", 0);
+    vplArena_Destroy(arena);
+    vplGeometry_Destroy(floor);
 }
 
 // The contribution is rho sum(flux)/pi cos cos / d^2, clamped; documented: rho sum(L) cos. Lights below the

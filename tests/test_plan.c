@@ -416,3 +416,44 @@ TEST(PixelsGatherTheirLightWherePatchesAreGroups, 2)
     }
     vplScene_Destroy(scene);
 }
+
+// Who waits for a picture sees a coarse one first, of an eighth or half of the particles, unless a small error is wanted: then
+// all passes are whole.
+TEST(SmallErrorsAreNotReachedThroughCoarsePasses, 1)
+{
+    static const struct {
+        float maxError;
+        int parts;
+    } rows[] = {{0.2f, 8}, {0.1f, 2}, {0.05f, 0}};
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        vplRenderOptions o = plainOptions();
+        vplPlan* plan;
+        o.method = VPL_METHOD_KELLER;
+        o.particles.count = 1600;
+        o.stop.maxError = rows[i].maxError;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->options.particles.count, 1600);
+        assert_int_equal(plan->options.stop.growFrom, rows[i].parts > 0 ? 1600 / rows[i].parts : 0);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
+
+// Lights are those of one whole pass: what ends a render and how its passes grow does not matter to them.
+TEST(LightsAreMadeWhereOnlyTheErrorEndsARender, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    vplRenderOptions o = plainOptions();
+    vplLightSet *growing, *plain;
+    o.method = VPL_METHOD_KELLER;
+    o.particles.count = 100;
+    assert_int_equal(vplMakeLights(scene, &o, &plain), VPL_SUCCESS);
+    o.stop.maxError = 0.1f;
+    o.stop.growFrom = 10;
+    assert_int_equal(vplMakeLights(scene, &o, &growing), VPL_SUCCESS);
+    assert_int_equal(growing->lightCount, plain->lightCount);
+    vplLightSet_Destroy(growing);
+    vplLightSet_Destroy(plain);
+    vplScene_Destroy(scene);
+}

@@ -567,3 +567,8 @@ TEST_ALONE(FailedAllocationsOfSkiesAreReported)
 {
     failEveryAllocation("sky", makeSky, "", 3);
 }
+
+TEST_ALONE(NoSceneHasNoSun)
+{
+    assert_int_equal(vplScene_GetSun(NULL), -1);
+}

@@ -435,3 +435,21 @@ TEST(WhatIsNotPossibleIsASentence, 1)
     assert_null(image);
     vplScene_Destroy(scene);
 }
+
+// Clusters of all bounces are those of the first and those of the others.
+TEST(ClustersOfAllBouncesAreCounted, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    int all[2];
+    for (int k = 0; k < 2; k++) {
+        vplRenderOptions o = plainOptions();
+        vplRenderStats stats;
+        o.method = VPL_METHOD_SSVP;
+        o.output.width = o.output.height = 16;
+        assert_int_equal(vplRenderOptions_Set(&o, "max-bounces", k ? "3" : "1"), VPL_SUCCESS);
+        vplImage_Destroy(renderScene(scene, &o, &stats));
+        all[k] = stats.allClusters;
+        assert_true(stats.clusters > 0 && (k ? all[k] > stats.clusters : all[k] == stats.clusters));
+    }
+    vplScene_Destroy(scene);
+}

@@ -72,6 +72,7 @@ TEST_ALONE(ErrorsAreForeseenAlongAPower)
     assertNear(alongPower(amount, noise, 1, 4), 4, 1e-12, "one point: as noise", 0);
     assertNear(alongPower(amount + 1, noise + 1, 2, 64), 1, 1e-12, "a short span: as noise", 0);
     assert_true(alongPower(amount, level, 3, 64) > 5);
+    assertNear(alongPower(amount, level, 3, 0.25), 16, 1e-12, "before the first: as noise", 0);
     assertNear(alongPower(amount, steep, 3, 160), pow(10, -0.7), 1e-12, "no faster than that", 0);
 }
 
@@ -164,6 +165,8 @@ TEST_ALONE(TimesAndSharesReadWell)
     }
     assert_string_equal(formatPercent(0.0083).text, "0.83 %");
     assert_string_equal(formatPercent(0.142).text, "14.2 %");
+    assert_string_equal(formatPercent(0.9994).text, "99.9 %");
+    assert_string_equal(formatPercent(0.9995).text, "100 %");
     assert_string_equal(formatPercent(1.3).text, "130 %");
 }
 

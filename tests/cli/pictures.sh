@@ -74,6 +74,9 @@ done
 for show in depth normals shadow-map shadow-factor overlay; do
     equals "OtherStagesAreNot_$show" "$(displayed --show $show --exposure 0 --tonemap none)" "$(displayed --show $show)"
 done
+for show in depth normals shadow-map shadow-factor; do
+    equals "ExposureIsForLightOnly_$show" "$(displayed --show $show --exposure 3)" "$(displayed --show $show)"
+done
 for map in none reinhard aces agx; do
     displayed --tonemap $map
 done | sort -u >"$scratch/maps"
@@ -88,6 +91,11 @@ check ReinhardHasItsOwnKey grep -q 'warning: --exposure has no effect with --ton
 displayed --tonemap agx --show depth >"$scratch/stdout"
 check DepthHasNoToneMap grep -q 'warning: --tonemap has no effect with a --show that is not light' "$scratch/stderr"
 rm "$out/e.png"
+# The back wall faces the camera: its normal (0, 0, 1) is shown as (0.5, 0.5, 1), in linear light (0.214, 0.214, 1).
+"$vpl" render "$closed" --size 16x9 --method direct --show normals --quiet -o "$out/n.png"
+"$vpl" compare "$out/n.png" "$out/n.png" --region 9,4,1,1 --regions 1x1 >"$scratch/stdout"
+check NormalsTowardsTheEyeAreBlue awk 'END { exit !($5 > 0.47 && $5 < 0.48) }' "$scratch/stdout"
+rm "$out/n.png"
 
 for type in png hdr pfm; do
     succeeds "Write_$type" "$vpl" render "$room" $base -o "$out/a.$type" --seed 1

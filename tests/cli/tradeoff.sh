@@ -47,6 +47,8 @@ for name in setting family sweeps on_front seed method particles reflectivity sa
     ssim flip psnr over_front energy_ratio max_difference cpu_ms total_ms peak_bytes ms_shading command; do
     check "TradeoffHas_$name" test -n "$(column "$csv" $name)"
 done
+equals TradeoffMeasuresItsSweepsOnly "direct min-distance pipeline sampler" \
+    "$(column "$csv" sweeps | tr ' ' '\n' | sort -u | tr '\n' ' ' | sed 's/^ *//;s/ $//')"
 equals TradeoffSeeds "1 2" "$(column "$csv" seed | sort -u | tr '\n' ' ' | sed 's/ $//')"
 equals TradeoffSamplers "auto halton hammersley random" "$(column "$csv" sampler | sort -u | tr '\n' ' ' | sed 's/ $//')"
 for name in setting seed image_hash error rmse relmse energy_ratio virtual_lights command; do
@@ -64,10 +66,19 @@ done >"$scratch/commands"
 equals TradeoffCommandsMakeTheirPictures "" "$(cat "$scratch/commands")"
 
 html=$report/report.html
+# The plot of the clamp has two panels: errors are percents, energies are ratios.
+sed -n '/>error<\/text>/,/>energy: all/p' "$html" >"$scratch/errors"
+check ClampHasErrors grep -q 'class="grid".* %</text>' "$scratch/errors"
+equals ClampErrorsArePercents 0 "$(grep 'class="grid"' "$scratch/errors" | grep -vc ' %</text>')"
+# Below it each distance is told once.
+grep -oE 'x="[0-9.]*" y="[0-9]*" text-anchor="middle">[0-9.e-]* m[ <]' "$html" | cut -d'"' -f2 >"$scratch/distances"
+check ClampHasDistances test "$(wc -l <"$scratch/distances")" -ge 3
+equals ClampTellsEachDistanceOnce "" "$(sort "$scratch/distances" | uniq -d)"
 check ReportAnswersTheQuestion grep -qE '5 % error (costs|was not reached|cannot be judged)' "$html"
 for limit in 20 10 5 2 1; do
     check "ReportHasARowFor_$limit" grep -q "<th>$limit %</th>" "$html"
 done
+check PlotHasTheBase grep -q "<title>the base: " "$report/tradeoff.svg"
 check ReportHasPictures grep -q 'src="data:image/png;base64,iVBORw0KGgo' "$html"
 check ReportNeedsNoOtherFile test -z "$(grep -oE '(src|href)="[^"]*' "$html" | grep -v '^src="data:image/png;base64,')"
 check ReportNeedsNoNetwork test -z "$(grep -oE '<script [^>]*|<link|@import|url\(|fetch\(|XMLHttp|https?://[^"]*' "$html" | grep -v 'http://www.w3.org/2000/svg')"
