@@ -242,3 +242,16 @@ TEST_ALONE(GatherWithoutItsDefaultFunctionIsRefused)
     expectRefusal(&s, &def, "vplGatherDef was not made by vplDefaultGatherDef");
     closeSetting(&s);
 }
+
+TEST_ALONE(ChoicesOutOfRangeAreRefused)
+{
+    Setting s = openSetting();
+    vplShadeDef lighting = vplDefaultShadeDef(), accumulation = lighting, output = lighting;
+    lighting.lighting = (vplLighting)2;
+    accumulation.accumulation = (vplAccumulation)-1;
+    output.output = (vplShadeOutput)99;
+    expectRefusal(&s, &lighting, "vplShadeDef.lighting is 2, must be in [0, 1]");
+    expectRefusal(&s, &accumulation, "vplShadeDef.accumulation is -1, must be in [0, 5]");
+    expectRefusal(&s, &output, "vplShadeDef.output is 99, must be in [0, 8]");
+    closeSetting(&s);
+}

@@ -86,8 +86,26 @@ static vplResult checkRows(const vplContext* context, const vplView* view, const
 }
 
 // The fields of one accumulation.
+static vplResult checkChoices(const vplContext* context, const vplShadeDef* def)
+{
+    const struct {
+        const char* name;
+        unsigned value, last;
+    } rows[] = {{"lighting", (unsigned)def->lighting, VPL_LIGHTING_DOCUMENTED},
+                {"accumulation", (unsigned)def->accumulation, VPL_ACCUMULATE_USUAL},
+                {"output", (unsigned)def->output, VPL_OUTPUT_BACKGROUND}};
+    for (int i = 0; i < 3; i++) {
+        if (rows[i].value > rows[i].last) {
+            return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.%s is %d, must be in [0, %d]",
+                           rows[i].name, (int)rows[i].value, (int)rows[i].last);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
 static vplResult checkAccumulation(const vplContext* context, const vplShadeDef* def)
 {
+    TRY(checkChoices(context, def));
     if (def->accumulation == VPL_ACCUMULATE_BATCHED && def->batch < 1) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.batch is %d, must be at least 1",
                        def->batch);
