@@ -28,6 +28,14 @@ typedef struct vplBvhNode {
     int32_t count;                  // of children; they come first
 } __attribute__((aligned(64))) vplBvhNode;
 
+static inline void vplBvhNode_SetBox(vplBvhNode* node, int child, vplBox box)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        node->planes[axis][child] = box.low[axis];
+        node->planes[axis + 3][child] = box.high[axis];
+    }
+}
+
 // Triangles in structure-of-arrays form, tested together. Unused lanes have id -1.
 typedef struct vplTriangleBlock {
     float p[3][3][VPL_BVH_WIDTH]; // [corner][axis]
@@ -54,7 +62,7 @@ typedef struct vplBvh {
 vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut);
 void vplBvh_Destroy(vplBvh* bvh);
 
-// Moves the triangles of objects that were moved, and the boxes around them; changes[i] has VPL_OBJECT_MOVED if object i was.
+// Updates the triangles of moved objects and the boxes around them; changes[i] has VPL_OBJECT_MOVED if object i was moved.
 // Triangles stay in their blocks. Returns false if the tree must be built anew instead: other triangles can be hit than
 // before, or rays would cost more than 1.2 times what they cost when it was built. All workers.
 bool vplBvh_Refit(vplBvh* bvh, const vplGeometry* geometry, const uint8_t* changes);

@@ -113,10 +113,7 @@ static void sortChildren(const vplBvhBuilder* b, int children[VPL_BVH_WIDTH], in
 
 static void setChild(vplBvhNode* node, int i, const vplBinary* child)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        node->planes[axis][i] = child ? child->box.low[axis] : INFINITY;
-        node->planes[axis + 3][i] = child ? child->box.high[axis] : -INFINITY;
-    }
+    vplBvhNode_SetBox(node, i, child ? child->box : vplBox_Empty());
     node->child[i] = 0;
 }
 

@@ -8,7 +8,7 @@
 
 #include <stdatomic.h>
 
-// Beyond this share of the cost when it was built, the tree is built anew.
+// The tree is built anew if rays would cost more than this many times what they cost when it was built.
 #define MOST_COST 1.2
 
 enum { CHUNK = 512 }; // nodes per task
@@ -83,12 +83,13 @@ static bool refill(Refit* r, int index)
     return true;
 }
 
-static void setPlanes(vplBvhNode* node, int child, vplBox box)
+static vplBox boundBlock(const vplGeometry* g, const vplTriangleBlock* block)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        node->planes[axis][child] = box.low[axis];
-        node->planes[axis + 3][child] = box.high[axis];
+    vplBox box = vplBox_Empty();
+    for (int i = 0; i < countOf(block); i++) {
+        box = vplBox_Join(box, vplBoundItem(g, block->id[i]));
     }
+    return box;
 }
 
 static void refitBlocks(void* data, int task, int worker)
@@ -98,15 +99,10 @@ static void refitBlocks(void* data, int task, int worker)
     for (int i = task * CHUNK; i < r->bvh->nodeCount && i < (task + 1) * CHUNK; i++) {
         vplBvhNode* node = &r->bvh->nodes[i];
         for (int k = 0; k < node->count; k++) {
-            if (node->child[k] >= 0 || !refill(r, ~node->child[k])) {
-                continue;
+            const int block = ~node->child[k];
+            if (block >= 0 && refill(r, block)) {
+                vplBvhNode_SetBox(node, k, boundBlock(r->geometry, &r->bvh->blocks[block]));
             }
-            const vplTriangleBlock* block = &r->bvh->blocks[~node->child[k]];
-            vplBox box = vplBox_Empty();
-            for (int t = 0; t < countOf(block); t++) {
-                box = vplBox_Join(box, vplBoundItem(r->geometry, block->id[t]));
-            }
-            setPlanes(node, k, box);
         }
     }
 }
@@ -134,7 +130,7 @@ static void refitNodes(vplBvh* bvh)
         vplBvhNode* node = &bvh->nodes[i];
         for (int k = 0; k < node->count; k++) {
             if (node->child[k] >= 0) {
-                setPlanes(node, k, boxOf(&bvh->nodes[node->child[k]]));
+                vplBvhNode_SetBox(node, k, boxOf(&bvh->nodes[node->child[k]]));
             }
         }
     }

@@ -8,8 +8,8 @@
 #include <vpl/scenetools.h>
 
 #include "base/arena.h"
-#include "geometry/object_build.h"
 #include "geometry/emission.h"
+#include "geometry/object_build.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 

@@ -79,10 +79,10 @@ static vplResult findChanges(const vplGeometry* g, const vplGeometryBuilder* b, 
     return VPL_SUCCESS;
 }
 
-// Makes the triangles of objects that have changed anew; all are where the whole scene has paint that it did not have.
+// Makes the triangles of changed objects anew; those of all objects if the paint does not fit.
 static vplResult updateObjects(vplGeometry* g, const vplScene* scene, uint8_t* changes)
 {
-    const bool fits = vplPaint_Fits(g->paint, scene);
+    const bool fits = vplPaintFits(g, scene);
     TRY(growMaterials(g, scene));
     const vplGeometryBuilder b = reopen(g, scene);
     for (int i = 0; i < g->objectCount; i++) {

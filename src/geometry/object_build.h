@@ -26,7 +26,7 @@ vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def);
 // Fills the vertices and triangles of object `index`, whose placement, counts and first indices are set.
 void vplBuildObject(const vplGeometryBuilder* builder, int index);
 
-// The same, and decides whether rays test the object by formula.
+// Calls vplBuildObject, and decides whether rays test the object by formula.
 void vplFinishObject(const vplGeometryBuilder* builder, int index);
 
 // Fills geometry->formulaObjects from the objects.
@@ -42,16 +42,17 @@ void vplSummarise(vplGeometry* geometry);
 // vertices. VPL_OUT_OF_MEMORY.
 vplResult vplBuildPaint(const vplScene* scene, vplGeometry* geometry, vplGeometryObject* objects);
 
-// What happened to an object of a scene.
+// How an object of the scene has changed since the geometry was made or updated.
 enum {
     VPL_OBJECT_MOVED = 1,
     VPL_OBJECT_RECOLOURED = 2, // it has another material, or one of its materials was changed
 };
 
-// True if paint, or NULL, needs no more than vplUpdatePaint to become that of the scene as it is now.
-bool vplPaint_Fits(const struct vplPaint* paint, const vplScene* scene);
+// True if vplUpdatePaint can make the paint of a geometry that of the scene as it is now, which it cannot where materials were
+// added; or if neither has any.
+bool vplPaintFits(const vplGeometry* geometry, const vplScene* scene);
 
-// Does so, with the mean reflectances of objects that have changed. The geometry has paint that fits. VPL_CANCELLED.
+// Updates the paint of a geometry, which has some that fits, and the mean reflectances of changed objects. VPL_CANCELLED.
 vplResult vplUpdatePaint(const vplScene* scene, const vplGeometry* geometry, vplGeometryObject* objects,
                          const uint8_t* changes);
 

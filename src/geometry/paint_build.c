@@ -15,7 +15,7 @@ static bool usesTexture(const vplMaterialDef* m)
     return m->texture >= 0 || m->alphaTexture >= 0;
 }
 
-// What the objects of a scene show.
+// Whether any object of a scene shows a texture, and whether any has colours of vertices.
 typedef struct Shown {
     bool textures, colours;
 } Shown;
@@ -90,8 +90,7 @@ static vplResult create(const vplScene* scene, const vplGeometry* g, Shown shown
             textures[i] = scene->textures[i].decoded;
             vplTexture_Retain(textures[i]);
         }
-        *p = (vplPaint){
-            texcoords, colours, places, means, textures, scene->textureCount, scene->materialCount, arena};
+        *p = (vplPaint){texcoords, colours, places, means, textures, scene->textureCount, arena};
     }
     return vplArena_Deliver(arena, result, p, paintOut);
 }
@@ -175,14 +174,15 @@ vplResult vplBuildPaint(const vplScene* scene, vplGeometry* g, vplGeometryObject
 
 // ---- updates
 
-bool vplPaint_Fits(const vplPaint* p, const vplScene* scene)
+bool vplPaintFits(const vplGeometry* g, const vplScene* scene)
 {
+    const vplPaint* p = g->paint;
     const Shown shown = inspectAll(scene);
     if (p == NULL) {
         return !shown.textures && !shown.colours;
     }
     bool same = (p->texcoords != NULL) == shown.textures && (p->colours != NULL) == shown.colours &&
-                p->textureCount == scene->textureCount && p->materialCount == scene->materialCount;
+                p->textureCount == scene->textureCount && g->materialCount == scene->materialCount;
     for (int i = 0; i < p->textureCount && same; i++) {
         same = p->textures[i] == scene->textures[i].decoded;
     }

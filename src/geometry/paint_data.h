@@ -16,7 +16,7 @@ typedef struct vplPaint {
     const vplTexturePlace* places; // one per material
     const vplRgb* means;           // reflectance, one per triangle
     struct vplTexture** textures;
-    int textureCount, materialCount;
+    int textureCount;
     struct vplArena* arena; // owns the arrays
 } vplPaint;
 

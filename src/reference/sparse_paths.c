@@ -7,6 +7,14 @@
 
 enum { CHUNK = 8 }; // pixels per task
 
+double vplSparsePixel_Variance(const vplSparsePixel* p, double each)
+{
+    const double r = p->sums[0].r - p->sums[1].r, g = p->sums[0].g - p->sums[1].g,
+                 b = p->sums[0].b - p->sums[1].b;
+    const double paths = 2 * each;
+    return (r * r + g * g + b * b) / 3 / (paths * paths);
+}
+
 vplResult vplSparsePaths_Init(vplSparsePaths* paths, const vplGeometry* geometry, const vplPathDef* def,
                               vplSparsePixel* pixels, int count)
 {

@@ -15,6 +15,9 @@ typedef struct vplSparsePixel {
     int64_t rays;
 } vplSparsePixel;
 
+// The variance of the mean of a pixel's paths, of which each half has `each`, estimated by the difference of the halves.
+double vplSparsePixel_Variance(const vplSparsePixel* pixel, double each);
+
 typedef struct vplSparsePaths {
     vplPathScene scene;
     vplSparsePixel* pixels; // borrowed

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The defaults of definitions; refuses what vplShadeView cannot draw, before anything is allocated.
+// Default defs of shading, and the checks of defs before anything is allocated.
 #include "shading/shading.h"
 
 #include <math.h>

@@ -155,7 +155,6 @@ static void measure(const Bench* b, Edit what, int runs)
 int main(int count, char** words)
 {
     const int runs = count > 3 ? atoi(words[3]) : 7;
-    vplContextDef def = vplDefaultContextDef();
     Bench b = {.options = plainOptions()};
     vplContext* context;
     uint64_t hash;
@@ -163,8 +162,7 @@ int main(int count, char** words)
         fprintf(stderr, "usage: edits SCENE [METHOD [RUNS]]\n");
         return 2;
     }
-    check(vplContext_Create(&def, &context));
-    check(vplScene_Load(context, words[1], &b.scene));
+    openScene(words[1], 0, VPL_ISA_AUTO, &context, &b.scene);
     check(vplRenderOptions_Set(&b.options, "method", count > 2 ? words[2] : "instant-radiosity"));
     b.options.output.width = 320;
     b.options.output.height = 180;

@@ -12,7 +12,7 @@ typedef struct Bin {
     int pixels;
     double noise;           // variance between passes
     double square, squares; // of the truth's estimate of the error, and their squares
-    double paths, halves;   // variance of one path, by both ways of the truth
+    double path, mean;      // variance of one path, and of the mean of the truth's paths
 } Bin;
 
 static void addPixels(const vplRenderer* r, const vplImage* image, Bin* bins)
@@ -39,12 +39,12 @@ static void addTruth(const vplRenderer* r, const vplImage* image, Bin* bins)
         Bin* bin = &bins[vplContrastBin(image, p.x, p.y)];
         bin->square += p.square;
         bin->squares += p.square * p.square;
-        bin->paths += p.pathVariance;
-        bin->halves += p.halfVariance;
+        bin->path += p.pathVariance;
+        bin->mean += p.meanVariance;
     }
 }
 
-static vplEdgeStep stepOf(const Bin* above, const Bin* below, double mean, int paths)
+static vplEdgeStep stepOf(const Bin* above, const Bin* below, double mean)
 {
     const double scale = 1 / (mean * mean), bias = fmax(0, below->square - below->noise),
                  spread = sqrt(below->squares);
@@ -53,8 +53,8 @@ static vplEdgeStep stepOf(const Bin* above, const Bin* below, double mean, int p
                          scale * vplLikelyBias(bias, spread),
                          scale * fmax(below->square, below->noise),
                          scale * spread,
-                         scale * above->paths,
-                         scale * above->halves / paths};
+                         scale * above->path,
+                         scale * above->mean};
 }
 
 static void addBin(Bin* sum, const Bin* bin)
@@ -63,12 +63,12 @@ static void addBin(Bin* sum, const Bin* bin)
     sum->noise += bin->noise;
     sum->square += bin->square;
     sum->squares += bin->squares;
-    sum->paths += bin->paths;
-    sum->halves += bin->halves;
+    sum->path += bin->path;
+    sum->mean += bin->mean;
 }
 
 // From the highest contrast down, a step wherever the number of pixels has grown by a half.
-static int findSteps(const Bin* bins, const vplRenderer* r, int pixels, vplEdgeStep steps[VPL_EDGE_STEPS])
+static int findSteps(const Bin* bins, double mean, int pixels, vplEdgeStep steps[VPL_EDGE_STEPS])
 {
     Bin above = {0};
     double next = FEWEST_PIXELS;
@@ -83,7 +83,7 @@ static int findSteps(const Bin* bins, const vplRenderer* r, int pixels, vplEdgeS
             for (int j = 0; j < i; j++) {
                 addBin(&below, &bins[j]);
             }
-            steps[count++] = stepOf(&above, &below, r->judged.mean, vplTruth_Paths(r->truth));
+            steps[count++] = stepOf(&above, &below, mean);
             next = 1.5 * above.pixels;
         }
     }
@@ -100,7 +100,7 @@ vplResult vplFindEdgeSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], in
     if (bins != NULL && r->judged.mean > 0) {
         addPixels(r, image, bins);
         addTruth(r, image, bins);
-        *countOut = findSteps(bins, r, image->width * image->height, steps);
+        *countOut = findSteps(bins, r->judged.mean, image->width * image->height, steps);
     }
     vplImage_Destroy(image);
     vplFree(context, bins);

@@ -109,28 +109,18 @@ void vplEdges_Draw(const vplEdges* e, vplImage* picture)
     }
 }
 
-// Of the mean of the paths through a chosen pixel, by the difference of their halves.
-static double varianceOf(const vplEdges* e, int i)
-{
-    const vplSparsePixel* p = &e->pixels[i];
-    const double r = p->sums[0].r - p->sums[1].r, g = p->sums[0].g - p->sums[1].g,
-                 b = p->sums[0].b - p->sums[1].b;
-    const double paths = 2.0 * e->paths.done;
-    return (r * r + g * g + b * b) / 3 / (paths * paths);
-}
-
 double vplEdges_VarianceAt(const vplEdges* e, size_t pixel)
 {
     const int32_t place = e->places[pixel];
-    return place < 0 ? -1 : varianceOf(e, place);
+    return place < 0 ? -1 : vplSparsePixel_Variance(&e->pixels[place], e->paths.done);
 }
 
-// Two halves tell a variance v up to a standard error of sqrt(2) v.
+// A variance v that is estimated from two halves has a standard error of sqrt(2) v.
 vplEdgeNoise vplEdges_Noise(const vplEdges* e, int pixels)
 {
     double sum = 0, squares = 0;
     for (int i = 0; e != NULL && i < e->paths.count; i++) {
-        const double v = varianceOf(e, i) / pixels;
+        const double v = vplSparsePixel_Variance(&e->pixels[i], e->paths.done) / pixels;
         sum += v;
         squares += 2 * v * v;
     }

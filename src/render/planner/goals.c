@@ -265,7 +265,7 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
             *doneOut = true;
         } else if (decides) {
             TRY(vplReconsider(r, asked, doneOut, &more));
-        } else if (r->asked.method == VPL_METHOD_AUTO) {
+        } else {
             TRY(vplTryEdges(r, asked, &more));
         }
     }

@@ -161,21 +161,12 @@ static double errorOf(const vplSparsePixel* p, const float* values, double each,
     return error;
 }
 
-// The variance of one path, by the paths of a pixel as if they were independent.
+// The variance of one path through a pixel, estimated as if its paths were independent.
 static double varianceOfPaths(const vplSparsePixel* p, double each)
 {
     const double square =
         (p->sums[0].r * p->sums[1].r + p->sums[0].g * p->sums[1].g + p->sums[0].b * p->sums[1].b) / 3;
     return p->squares / (2 * each) - square / (each * each);
-}
-
-// The same by the difference of the halves. It is smaller, because the paths of a half are spread evenly: where an edge runs
-// through a pixel, 128 paths have a thirtieth of the variance of independent ones (lamp of cornell-area).
-static double varianceOfHalves(const vplSparsePixel* p, double each)
-{
-    const double r = p->sums[0].r - p->sums[1].r, g = p->sums[0].g - p->sums[1].g,
-                 b = p->sums[0].b - p->sums[1].b;
-    return (r * r + g * g + b * b) / 3 / (2 * each);
 }
 
 vplTruthPixel vplTruth_GetPixel(const vplTruth* t, const vplImage* picture, int i)
@@ -188,7 +179,7 @@ vplTruthPixel vplTruth_GetPixel(const vplTruth* t, const vplImage* picture, int 
     out.square = t->weights[i] * errorOf(p, values, each, &mean);
     out.mean = t->weights[i] * mean;
     out.pathVariance = t->weights[i] * varianceOfPaths(p, each);
-    out.halfVariance = t->weights[i] * varianceOfHalves(p, each);
+    out.meanVariance = t->weights[i] * vplSparsePixel_Variance(p, each);
     return out;
 }
 
@@ -201,7 +192,7 @@ vplJudgement vplTruth_Judge(const vplTruth* t, const vplImage* picture, const vp
 {
     vplJudgement j = {0};
     const double each = t->paths.done, count = t->paths.count;
-    double squares = 0, halves = 0;
+    double squares = 0, variance = 0; // of the means
     for (int i = 0; i < t->paths.count; i++) {
         vplTruthPixel p = vplTruth_GetPixel(t, picture, i);
         const size_t place = (size_t)p.y * (size_t)picture->width + (size_t)p.x;
@@ -210,10 +201,10 @@ vplJudgement vplTruth_Judge(const vplTruth* t, const vplImage* picture, const vp
         squares += p.square * p.square;
         j.mean += p.mean;
         j.pathVariance += p.pathVariance;
-        halves += p.halfVariance;
+        variance += p.meanVariance;
         j.rays += t->pixels[i].rays;
     }
-    j.pathVariance = fmin(j.pathVariance, halves);
+    j.pathVariance = fmin(j.pathVariance, 2 * each * variance);
     j.spread =
         count > 1 ? sqrt(fmax(0, squares - j.square * j.square / count) * count / (count - 1)) : INFINITY;
     const vplEdgeNoise noise = vplEdges_Noise(edges, t->pixelCount);

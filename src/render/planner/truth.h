@@ -12,7 +12,7 @@ typedef struct vplJudgement {
     double square;       // without bias; may be negative where the error is small
     double spread;       // standard error of `square`
     double mean;         // of the true picture
-    double pathVariance; // of a picture with one path per pixel: divide by their number
+    double pathVariance; // of a picture with one path per pixel; divide by the number of paths
     double pathRays;     // rays of a path
     int64_t rays;        // cast for the truth, so far
 } vplJudgement;
@@ -51,18 +51,20 @@ typedef struct vplTruthPixel {
     int x, y;
     double
         square; // mean square error of its values, times the pixels of the picture that it stands for over all
-    double mean; // of its true values, times the same
-    double
-        pathVariance; // of one path, times the same: as if paths were independent, and by the difference of the
-    double halfVariance; // halves. The smaller of the sums counts.
+    double mean;         // of its true values, times the same
+    double pathVariance; // of one path as if paths were independent, times the same
+    // The variance of the mean of its paths by the difference of their halves, times the same. It is smaller than follows from
+    // pathVariance, because paths are spread evenly: where the edge of a lamp runs through a pixel, 128 paths have a thirtieth
+    // of the variance of independent ones (cornell-area).
+    double meanVariance;
 } vplTruthPixel;
 
 vplTruthPixel vplTruth_GetPixel(const vplTruth* truth, const vplImage* picture, int index);
 
 int vplTruth_CountPixels(const vplTruth* truth);
 
-// The error of a picture of the same size. That of pixels at edges, which may be NULL, is the noise of their own paths, which are
-// more than those of the truth.
+// Estimates the error of a picture of the same size. `edges` may be NULL; the error of its pixels is the noise of their own paths,
+// which are more than those of the truth.
 vplJudgement vplTruth_Judge(const vplTruth* truth, const vplImage* picture, const vplEdges* edges);
 
 #endif
