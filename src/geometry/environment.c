@@ -221,7 +221,7 @@ vplResult vplEnvironment_Create(const vplScene* scene, vplEnvironment** environm
     }
     vplArena* arena = vplArena_Create(vplScene_GetContext(scene));
     Stamped* stamped = vplArena_AllocZero(arena, 1, sizeof *stamped);
-    vplEnvironment* e = &stamped->environment;
+    vplEnvironment* e = (vplEnvironment*)stamped; // its first member, and NULL where nothing was allocated
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
         stamped->stamp = scene->environmentStamp;
