@@ -284,7 +284,7 @@ $(BUILD)/vpl-mpi.%: $(MPI_SOURCES) src/mpi/ranks.h $(MPI_OTHERS)
 $(BUILD)/vpl.1: src/cli/vpl.1.in $(BUILD)/vpl
 	$(Q)$(BUILD)/vpl help --man | sed -e '/^@OPTIONS@$$/{r /dev/stdin' -e 'd' -e '}' $< > $@
 
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff/math.o %/bench/fit.o %/bench/measure.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/libcli.a $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -327,7 +327,7 @@ $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
-# The program without its main, for the fuzzer of command lines.
+# The program without its main, for tests and the fuzzer of command lines.
 $(BUILD)/libcli.a: $(filter-out %/cli/main.o,$(CLI_OBJECTS))
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $^

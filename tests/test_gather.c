@@ -120,6 +120,43 @@ TEST(TheFootOfAWallIsLitByTheWall, 1)
     closeMesh(m);
 }
 
+enum { MIDDLE_CELL = 15 };
+
+// The cell in the middle of a triangle alone, or all of them: both have the same centroid.
+static uint16_t middleOpen(const vplPatches* patches, int patch, int face)
+{
+    const bool floor = vplPatches_TriangleOf(patches, patch) == 0;
+    return face > 0 ? 0 : floor ? 1 << MIDDLE_CELL : 0xffff;
+}
+
+// Light falls on a vertex from the same place however many cells are open around one centroid. A wall that is as low as that
+// place is far from it tells small distances apart.
+TEST(TheNumberOfOpenCellsDoesNotMoveAVertex, 1)
+{
+    static OpenFcn* const open[2] = {frontsOpen, middleOpen};
+    double received[2];
+    for (int i = 0; i < 2; i++) {
+        Shape shape = {0};
+        addTriangle(&shape, vplVec(0, 0, 0), vplVec(-3, 0, 3), vplVec(3, 0, 3));
+        addQuad(&shape, vplVec(-9, 0, -0.01f), vplVec(9, 0, -0.01f), vplVec(9, 0.1f, -0.01f),
+                vplVec(-9, 0.1f, -0.01f));
+        vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
+        freeShape(&shape);
+        vplPatchMesh* m = meshOf(openSides(openPatches(g, 100, 0), open[i]));
+        vplRgb *values = lightWall(m), *e = gatherOf(m, values, 4096, NULL);
+        received[i] = -1;
+        for (int v = 0; v < m->vertexCount; v++) {
+            const vplVec3 p = m->positions[v];
+            received[i] = p.x == 0 && p.z == 0 ? (double)e[2 * v].r : received[i];
+        }
+        free(e);
+        free(values);
+        closeMesh(m);
+    }
+    assert_true(received[0] > 0.1 && received[0] < 0.4);
+    assertNear(received[1], received[0], 0.002, "of the middle cell", 0);
+}
+
 static uint16_t backsOpen(const vplPatches* patches, int patch, int face)
 {
     (void)patches;

@@ -202,6 +202,20 @@ TEST(SamplesOfTheEnvironmentAreUnbiased, 1)
     assert_true(fabs(irradiance / exact - 1) < 0.01);
 }
 
+// The first number 0 is straight up, and nearly 1 nearly straight down, whatever shines there.
+TEST(SamplesOfTheSkyReachBothPoles, 1)
+{
+    float pixels[3 * WIDTH * HEIGHT];
+    const vplEnvironmentDef defs[2] = {constantOf(1, 1, 1), unevenOf(pixels)};
+    for (int i = 0; i < 4; i++) {
+        vplEnvironment* e = openEnvironment(context, defs[i / 2]);
+        const vplVec3 d = vplEnvironment_Sample(e, i % 2 == 0 ? 0 : 1 - 0x1p-53, 0.3).direction;
+        assertNear((double)vplLength(d), 1, 1e-6, "length", i);
+        assertNear((double)d.y, i % 2 == 0 ? 1 : -1, 1e-6, "height", i);
+        vplEnvironment_Destroy(e);
+    }
+}
+
 TEST(APictureOfTheSkyLiesAsDescribed, 1)
 {
     float pixels[3 * 8 * 4] = {0};

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Tests of the arithmetic of vpl tradeoff, and of the PNG that its report embeds.
+// Tests of the arithmetic of vpl tradeoff, of what its report says and shows, and of the PNG that it embeds.
 #include "test.h"
 
-#include "cli/bench/measure.h"
-#include "cli/tradeoff/math.h"
+#include "cli/tradeoff/tradeoff.h"
+
+#include <stdlib.h>
 
 TEST_ALONE(MedianIsTheMiddleOrTheMeanOfTwo)
 {
@@ -168,6 +169,101 @@ TEST_ALONE(TimesAndSharesReadWell)
     assert_string_equal(formatPercent(0.9994).text, "99.9 %");
     assert_string_equal(formatPercent(0.9995).text, "100 %");
     assert_string_equal(formatPercent(1.3).text, "130 %");
+}
+
+// ---- the report
+
+// Settings with given errors, each ten times as dear as the one before.
+static Tradeoff* measured(Family family, const double* error, int count)
+{
+    static Arguments arguments = {.positionals = {"room.json"}};
+    static Tradeoff t;
+    memset(&t, 0, sizeof t);
+    t.arguments = &arguments;
+    t.settingCount = count;
+    double ms = 1;
+    for (int i = 0; i < count; i++, ms *= 10) {
+        Setting* s = &t.settings[i];
+        s->family = family;
+        s->sweeps[family - FAMILY_UNSHADOWED] = true; // of the numbers of particles
+        s->work = s->cpuMs = s->cpuLow = s->cpuHigh = ms;
+        s->error = s->errorLow = s->errorHigh = error[i];
+        s->runCount = 1;
+    }
+    return &t;
+}
+
+// Lights that shine through walls settle on a wrong answer; with shadows, it is the clamp and the maps that are left.
+TEST_ALONE(TheReportSaysWhyMoreLightsDoNotHelp)
+{
+    static const struct {
+        Family family;
+        double error[4];
+        const char* sentence;
+    } rows[] = {
+        {FAMILY_UNSHADOWED,
+         {0.5, 0.32, 0.3, 0.3},
+         "Virtual lights without shadows stop getting better at about <strong>30.0 %</strong>, however many there "
+         "are: they shine through walls"},
+        {FAMILY_MAP,
+         {0.5, 0.1, 0.05, 0.05},
+         "Virtual lights with shadow maps stop getting better at about <strong>5.0 %</strong>, however many there "
+         "are: what is left is the clamp near lights and the resolution of the shadow maps"},
+        {FAMILY_RAY, {0.5, 0.15, 0.05, 0.015}, NULL}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        Text html = {0};
+        addAnswers(measured(rows[i].family, rows[i].error, 4), &html);
+        assert_non_null(html.bytes);
+        assert_true(rows[i].sentence != NULL ? strstr(html.bytes, rows[i].sentence) != NULL
+                                             : strstr(html.bytes, "stop getting better") == NULL);
+        free(html.bytes);
+    }
+}
+
+// Equal factors are equal distances, of errors as of times.
+TEST_ALONE(ThePlotIsLogarithmicInBothDirections)
+{
+    static const double error[3] = {0.9, 0.09, 0.009};
+    Text svg = {0};
+    double x[3], y[3];
+    writePlot(measured(FAMILY_MAP, error, 3), &svg);
+    assert_non_null(svg.bytes);
+    const char* at = svg.bytes;
+    for (int i = 0; i < 3; i++) {
+        at = strstr(at, "<g><title>"); // of a point
+        assert_non_null(at);
+        at = strstr(at, "translate(");
+        assert_int_equal(sscanf(at, "translate(%lf %lf)", &x[i], &y[i]), 2);
+    }
+    free(svg.bytes);
+    assert_true(x[1] - x[0] > 50 && y[1] - y[0] > 50);
+    assertNear(x[2] - x[1], x[1] - x[0], 0.2, "times", 0);
+    assertNear(y[2] - y[1], y[1] - y[0], 0.2, "errors", 0);
+}
+
+// Whole stops with which nine in ten of the lit values of the truth are at most 0.8.
+TEST(PicturesOfTheReportAreAsBrightAsTheTruthAllows, 1)
+{
+    static const struct {
+        float most, few; // values of nine lit pixels in ten, and of the others
+        const char* exposure;
+    } rows[] = {{0.3f, 0.3f, "exposure +1 stops"},
+                {0.39f, 3, "exposure +1 stops"},
+                {0.09f, 0.01f, "exposure +3 stops"},
+                {3, 100, "exposure -2 stops"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        Tradeoff* t = measured(FAMILY_MAP, NULL, 0);
+        Text html = {0};
+        assert_int_equal(vplImage_Create(context, 10, 4, &t->reference.image), VPL_SUCCESS);
+        for (int k = 0; k < 60; k++) { // the lower half is black
+            t->reference.image->pixels[k] = k / 3 % 10 == 0 ? rows[i].few : rows[i].most;
+        }
+        addPictures(t, &html);
+        assert_non_null(html.bytes);
+        assert_non_null(strstr(html.bytes, rows[i].exposure));
+        free(html.bytes);
+        vplImage_Destroy(t->reference.image);
+    }
 }
 
 TEST(EncodedPngIsTheFileThatWouldBeWritten, 1)

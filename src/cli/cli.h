@@ -124,7 +124,7 @@ vplContext* openContext(const Arguments* arguments);
 vplResult planRender(const Arguments* arguments, const vplScene* scene, vplPlan** planOut);
 
 // Loads the scene that the arguments name, as it stands at --frame; a mesh by itself is fitted to the picture.
-vplResult loadScene(const Arguments* arguments, vplContext* context, vplScene** sceneOut);
+vplResult loadNamedScene(const Arguments* arguments, vplContext* context, vplScene** sceneOut);
 
 // Reads "ELEVATION", "ELEVATION,TURBIDITY" or "ELEVATION,TURBIDITY,TURN", degrees; false if it is anything else.
 bool parseSky(const char* value, vplEnvironmentDef* defOut);

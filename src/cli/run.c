@@ -65,7 +65,7 @@ vplContext* openContext(const Arguments* arguments)
     return context;
 }
 
-vplResult loadScene(const Arguments* a, vplContext* context, vplScene** sceneOut)
+vplResult loadNamedScene(const Arguments* a, vplContext* context, vplScene** sceneOut)
 {
     vplModelSceneDef def = vplDefaultModelSceneDef();
     def.aspect = (double)a->render.output.width / a->render.output.height;
@@ -150,7 +150,7 @@ int runOnScene(const Arguments* a, SceneWork* work)
         return EXIT_USAGE;
     }
     vplScene* scene = NULL;
-    int code = exitCode(loadScene(a, context, &scene), true);
+    int code = exitCode(loadNamedScene(a, context, &scene), true);
     if (code == EXIT_DONE && a->planIn != NULL && !a->quiet && a->planScene != vplScene_GetHash(scene)) {
         complain("warning: %s was made for another scene, or %s was changed since: the picture will differ",
                  a->planIn, a->positionals[0]);

@@ -69,14 +69,14 @@ int shareScene(Ranks* r, vplContext* context, vplScene** sceneOut)
     const bool reads = r->rank == 0 || r->options.shared;
     int code = EXIT_DONE;
     vplContext_SetFileObserver(context, r->rank == 0 && !r->options.shared ? noteFile : NULL, &all);
-    code = reads ? exitCode(loadScene(r->arguments, context, sceneOut), true) : EXIT_DONE;
+    code = reads ? exitCode(loadNamedScene(r->arguments, context, sceneOut), true) : EXIT_DONE;
     vplContext_SetFileObserver(context, NULL, NULL);
     code = largestNumber(r, code);
     if (code == EXIT_DONE && !r->options.shared) {
         code = shareFiles(r, &all) ? EXIT_DONE : EXIT_COULD_NOT;
         if (code == EXIT_DONE && r->rank > 0) {
             vplContext_SetFiles(context, all.files, all.count);
-            code = exitCode(loadScene(r->arguments, context, sceneOut), true);
+            code = exitCode(loadNamedScene(r->arguments, context, sceneOut), true);
             vplContext_SetFiles(context, NULL, 0);
         }
         code = largestNumber(r, code);

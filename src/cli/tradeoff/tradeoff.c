@@ -128,10 +128,10 @@ static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOu
 
 static int readScene(Tradeoff* t)
 {
-    int code = exitCode(loadScene(t->arguments, t->context, &t->scene), true);
+    int code = exitCode(loadNamedScene(t->arguments, t->context, &t->scene), true);
     if (code == EXIT_DONE && t->arguments->reference == NULL) {
         t->silent = true; // warnings about the scene have been printed
-        code = exitCode(loadScene(t->arguments, t->tracing, &t->traced), true);
+        code = exitCode(loadNamedScene(t->arguments, t->tracing, &t->traced), true);
         t->silent = false;
     }
     if (code != EXIT_DONE) {
