@@ -11,7 +11,8 @@
 
 #include <stdlib.h>
 
-static const float FAR = 7;
+// Metres that a map reaches, and that of a small scene.
+static const float FAR = 7, NEAR = 0.25f;
 
 // Fills a face with random planes cut by random lines, with noise, with holes to infinity, or with rough
 // patches.
@@ -37,14 +38,14 @@ static void fillFace(float* texels, int size, uint64_t seed, int kind)
     }
 }
 
-static vplCubeMap* makeRandomMap(vplContext* context, int size, uint64_t seed)
+static vplCubeMap* makeRandomMap(vplContext* context, int size, float reach, uint64_t seed)
 {
     vplGeometry* g = tableRoom(context);
     vplCubeMapDef def = vplDefaultCubeMapDef();
     vplCubeMap* map;
     def.position = (vplVec3){0.25f, 1, -0.5f};
     def.size = size;
-    def.farPlane = FAR;
+    def.farPlane = reach;
     assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
     for (int face = 0; face < 6; face++) {
         fillFace((float*)map->texels + face * size * size, size, seed + (uint64_t)face, face % 3);
@@ -78,7 +79,7 @@ TEST(BoundsHoldForEveryTexel, 3, SLOW)
 {
     const int sizes[] = {1, 2, 7, 15, 16, 17, 33, 64, 100, 257, 1025};
     for (int k = 0; k < 11; k++) {
-        vplCubeMap* map = makeRandomMap(context, sizes[k], (uint64_t)(100 * k));
+        vplCubeMap* map = makeRandomMap(context, sizes[k], FAR, (uint64_t)(100 * k));
         const vplCubeBounds* bounds = map->bounds;
         assert_int_equal(bounds->side[bounds->levelCount - 1], 1);
         for (int level = 0; level < bounds->levelCount; level++) {
@@ -189,7 +190,7 @@ TEST_ALONE(BoundsNeverChangeAShadowOfRandomMaps, SLOW)
         vplContext* context = openIsaContext(2, (vplIsa)isa);
         int64_t told[2] = {0, 0};
         for (int k = 0; k < 5 && context != NULL; k++) {
-            vplCubeMap* map = makeRandomMap(context, sizes[k], (uint64_t)(1000 + 10 * k));
+            vplCubeMap* map = makeRandomMap(context, sizes[k], FAR, (uint64_t)(1000 + 10 * k));
             for (int i = 0; i < 2000; i++) {
                 vplSurface surface;
                 vplShadow shadow = makeShadow(map, i);
@@ -203,6 +204,21 @@ TEST_ALONE(BoundsNeverChangeAShadowOfRandomMaps, SLOW)
             closeTestContext(context);
         }
     }
+}
+
+// In a map that reaches less than a metre, distances in metres are smaller than the shares of the reach that are stored.
+TEST(BoundsNeverChangeAShadowOfASmallScene, 1)
+{
+    int64_t told[2] = {0, 0};
+    vplCubeMap* map = makeRandomMap(context, 128, NEAR, 3000);
+    for (int i = 0; i < 4000; i++) {
+        vplSurface surface;
+        vplShadow shadow = makeShadow(map, i);
+        randomBlock(map, (uint64_t)i, &surface);
+        compareShadows(&shadow, &surface, told);
+    }
+    vplCubeMap_Destroy(map);
+    assert_true(told[0] > 4000 && told[1] > 1000);
 }
 
 // Uses the surfaces of a real room: bounds must decide for planes where samples differ from the limit only by

@@ -3,6 +3,7 @@
 #include "scenes.h"
 
 #include "render/planner/contrast.h"
+#include "render/planner/edges.h"
 
 enum { WIDTH = 96, HEIGHT = 54, PIXELS = 400 };
 
@@ -68,6 +69,31 @@ TEST(PixelsThatDifferMostFromTheirNeighboursAreTraced, 1)
     }
     assert_true(changed <= PIXELS && changed > 3 * PIXELS / 4);
     assert_true(asSharp <= PIXELS); // none with more contrast was left out
+    vplImage_Destroy(plain);
+    vplImage_Destroy(traced);
+    vplScene_Destroy(scene);
+}
+
+// All pixels of the highest contrasts that fit are traced: the lowest of these contrasts too, which many pixels share.
+TEST(EveryPixelOfAContrastThatFitsIsTraced, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    const vplRenderOptions without = edgeOptions(0, ""), with = edgeOptions(PIXELS, "--edge-paths 2");
+    vplImage *plain = renderScene(scene, &without, NULL), *traced = renderScene(scene, &with, NULL);
+    static int counts[VPL_CONTRAST_BINS];
+    int lowest = VPL_CONTRAST_BINS, count = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        counts[vplContrastBin(plain, i % WIDTH, i / WIDTH)]++;
+    }
+    while (count + counts[lowest - 1] <= PIXELS) {
+        count += counts[--lowest];
+    }
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const bool chosen = vplContrastBin(plain, i % WIDTH, i / WIDTH) >= lowest;
+        const float value = plain->pixels[3 * i];
+        const bool noisy = value > 0 && value < 10; // the lamp and the background look the same to all paths
+        assert_int_equal(isSamePixel(plain, traced, (size_t)i), !(chosen && noisy));
+    }
     vplImage_Destroy(plain);
     vplImage_Destroy(traced);
     vplScene_Destroy(scene);

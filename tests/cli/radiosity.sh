@@ -28,6 +28,14 @@ succeeds InfoOfRadiosity "$vpl" info "$room" --method radiosity --patches 100
 check InfoHasPatches grep -qE '^ +patches +[0-9]+, edges up to [0-9.]+ m$' "$scratch/stdout"
 check InfoHasSides grep -qE '^ +sides +[0-9]+ of [0-9]+ that light reaches$' "$scratch/stdout"
 check InfoHasFormFactors grep -qE '^ +form factors +[0-9.]+ KiB$' "$scratch/stdout"
+# Groups are named where there are some, and as many as foretold.
+rooms=$PWD/examples/scenes/six-rooms.json
+"$vpl" render "$rooms" $tiny --patches 300 --gather 0 -o "$out/a.pfm" --stats "$s"
+"$vpl" info "$rooms" --method radiosity --patches 300 --gather 0 >"$scratch/i"
+equals InfoForetellsGroups "$(field "$s" patch_groups) of the patches are groups of $(field "$s" grouped_triangles) triangles" \
+    "$(sed -n 's/^ *groups *//p' "$scratch/i")"
+"$vpl" render "$rooms" $tiny --patches 300 --gather 0 --patch-groups off -o "$out/a.pfm" --stats "$s"
+equals NoGroupsAreNotNamed "" "$(grep -E 'patch_groups|grouped_triangles' "$s")"
 for show in picture indirect direct depth patches patch-radiosity form-factor-sums residual; do
     succeeds "RadiosityShows_$show" "$vpl" render "$room" $tiny --patches 50 --show $show -o "$out/a.png"
 done
