@@ -105,6 +105,52 @@ TEST(PlaneGetsBackWhatTheClampTakes, 1)
     freeTable(&t);
 }
 
+// ---- a ceiling that lamps light from below
+
+enum { LAMPS = 12, POINTS_PER_LAMP = 16, LAMP_RAYS = 512 };
+
+// Makes a black floor below the ceiling, with lamps around it that face up.
+static vplGeometry* ceilingOverLamps(vplContext* context)
+{
+    vplScene* scene = sceneOf(context, 0);
+    const int white = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, 0);
+    const int lamp = addMaterial(scene, (vplRgb){0, 0, 0}, 1);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -VPL_PI / 2, 0, vplVec(1, 1, 1));
+    addThing(scene, VPL_OBJECT_QUAD, white, vplVec(0, 0.5f, 0), VPL_PI / 2, 0, vplVec(6, 6, 1));
+    for (int i = 0; i < LAMPS; i++) {
+        const double turn = 2 * VPL_PI * i / LAMPS;
+        addThing(scene, VPL_OBJECT_QUAD, lamp, vplVec(1.2f * (float)cos(turn), 0.1f, 1.2f * (float)sin(turn)),
+                 -VPL_PI / 2, 0, vplVec(0.3f, 0.3f, 1));
+    }
+    return buildGeometry(scene);
+}
+
+// However few of the triangles that emit a hit chooses, the mean is the light of all, for which points on them stand.
+TEST(ChosenTrianglesLightWhatRaysHit, 1)
+{
+    static const int chosen[] = {1, 16, 17, 64, 200};
+    static vplShadeLight points[LAMPS * POINTS_PER_LAMP];
+    vplGeometry* g = ceilingOverLamps(context);
+    vplEmission* emission;
+    assert_int_equal(vplEmission_Create(g, NULL, 0, &emission), VPL_SUCCESS);
+    vplCompensationDef near = vplDefaultCompensationDef();
+    near.rayCount = LAMP_RAYS;
+    near.areaLights = points;
+    near.areaLightCount = vplSampleAreaLights(emission, LAMPS * POINTS_PER_LAMP, points);
+    vplShadeDef def = vplDefaultShadeDef();
+    def.minDistance = 1;
+    def.compensation = &near;
+    const double all = givenBack(g, &def);
+    near.areaLightCount = 0;
+    assert_true(all > 0.001 && givenBack(g, &def) == 0);
+    for (int i = 0; i < 5; i++) {
+        near.trianglesPerPoint = chosen[i];
+        assertNear(givenBack(g, &def), all, 0.03 * all, "light of chosen triangles", chosen[i]);
+    }
+    vplEmission_Destroy(emission);
+    vplGeometry_Destroy(g);
+}
+
 // ---- a closed room whose walls reflect and emit equally: radiance is E / (1 - rho) everywhere
 
 static vplScene* furnace(vplContext* context, float rho, vplVec3 eye, vplVec3 target, double fovY)
