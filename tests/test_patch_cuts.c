@@ -3,6 +3,7 @@
 #include "patch_support.h"
 #include "radiosity_pictures.h"
 
+#include "geometry/patch_cuts.h"
 #include "geometry/triangle.h"
 #include "math/double3.h"
 
@@ -181,13 +182,18 @@ static void addBoxes(vplScene* scene, Dice* dice, int count)
     }
 }
 
-static void tryBoxes(vplContext* context, uint64_t seed)
+static vplGeometry* boxesOnFloor(vplContext* context, uint64_t seed)
 {
     Dice dice = {seed, 0};
     vplScene* scene = sceneOf(context, 0.5f);
     addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -VPL_PI / 2, 0, vplVec(5, 5, 1));
     addBoxes(scene, &dice, 2 + (int)(seed % 6));
-    vplGeometry* g = buildGeometry(scene);
+    return buildGeometry(scene);
+}
+
+static void tryBoxes(vplContext* context, uint64_t seed)
+{
+    vplGeometry* g = boxesOnFloor(context, seed);
     vplPatches* p = cutPatches(g, seed % 2 == 0 ? 1 : 600);
     const int spanning = countSpanning(g, p, 1);
     if (spanning > p->unresolvedCuts) {
@@ -198,6 +204,34 @@ static void tryBoxes(vplContext* context, uint64_t seed)
     assertFound(p);
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
+}
+
+// Patches that meet at a point share it: no two corners are so close that rounding alone separates them.
+static void assertJoined(const vplGeometry* g, const vplPatches* p)
+{
+    const double radius = 0.25 * vplCutTolerance(g);
+    for (int i = 0; i < p->positionCount; i++) {
+        for (int j = 0; j < i; j++) {
+            double a[3], b[3];
+            vplToDouble3(p->positions[i], a);
+            vplToDouble3(p->positions[j], b);
+            assert_true(between(a, b) > radius);
+        }
+    }
+}
+
+TEST(PatchesOfCutsThatMeetShareTheirCorners, 1)
+{
+    int pieces = 0;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        vplGeometry* g = boxesOnFloor(context, seed);
+        vplPatches* p = cutPatches(g, 1);
+        pieces += p->patchCount - g->triangleCount;
+        assertJoined(g, p);
+        vplPatches_Destroy(p);
+        vplGeometry_Destroy(g);
+    }
+    assert_true(pieces > 1000);
 }
 
 TEST(NoPatchSpansACrossing, 1)
