@@ -2,6 +2,8 @@
 // Tests of --method auto, --max-error, --budget and --quality: what is chosen, what is kept, and what is said of errors.
 #include "scenes.h"
 
+#include <time.h>
+
 static vplRenderOptions smallOptions(void)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
@@ -92,6 +94,52 @@ TEST(AnInterruptedPassIsNoPartOfThePicture, 2)
     vplImage_Destroy(renderScene(scene, &replay, &again));
     assert_true(again.imageHash == stats.imageHash);
     vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
+
+static double secondsNow(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// Waits in the second pass until a time.
+typedef struct Waiting {
+    vplRenderer* renderer;
+    double until; // seconds
+} Waiting;
+
+static bool waitInPass(void* user, double fraction)
+{
+    const Waiting* w = user;
+    (void)fraction;
+    while (w->renderer != NULL && vplRenderer_GetPassCount(w->renderer) > 0 && secondsNow() < w->until) {
+    }
+    return true;
+}
+
+// Time is up within the second pass: the render ends there, and the first pass is its picture.
+TEST(APassEndsWhereTheTimeIsUp, 2)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    Waiting waiting = {.renderer = NULL};
+    vplImage* image;
+    vplRenderStats stats;
+    o.method = VPL_METHOD_KELLER;
+    o.stop.budgetMs = 300;
+    o.progress = waitInPass;
+    o.progressUser = &waiting;
+    assert_int_equal(vplRenderer_Create(scene, &o, &waiting.renderer), VPL_SUCCESS);
+    waiting.until = secondsNow() + 0.4;
+    for (bool done = false; !done;) {
+        assert_int_equal(vplRenderer_Step(waiting.renderer, &done), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderer_GetImage(waiting.renderer, &image, &stats), VPL_SUCCESS);
+    assert_int_equal(stats.passes, 1);
+    vplImage_Destroy(image);
+    vplRenderer_Destroy(waiting.renderer);
     vplScene_Destroy(scene);
 }
 
