@@ -111,6 +111,27 @@ TEST_ALONE(AReplayedPlanGivesTheSameBits, SLOW)
     unlink(planFile());
 }
 
+// Pixels at edges that the planner had traced are traced again.
+TEST_ALONE(AReplayedPlanTracesTheSameEdges)
+{
+    static const char PATH[] = "examples/scenes/room-area.json";
+    vplContext *context = openTestContext(2), *elsewhere = openTestContext(1);
+    vplScene* scene = openScene(context, PATH);
+    vplRenderOptions o = vplDefaultRenderOptions(), again = o;
+    vplRenderStats stats;
+    o.output.width = 64;
+    o.output.height = 36;
+    o.stop.maxError = 0.1;
+    const uint64_t hash = renderAndWrite(scene, &o);
+    assert_true(replay(elsewhere, PATH, &stats) == hash);
+    assert_int_equal(vplRenderOptions_Load(context, planFile(), &again, NULL), VPL_SUCCESS);
+    assert_true(again.path.edgePixels > 0 && again.path.edgePaths > 1);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    closeTestContext(elsewhere);
+    unlink(planFile());
+}
+
 // A plan that was not rendered has what ends it; its options make an equal plan.
 TEST(APlanThatWasNotRenderedIsReplayedToo, 1)
 {
