@@ -4,6 +4,7 @@
 
 #include "render/planner/contrast.h"
 #include "render/planner/edges.h"
+#include "render/renderer.h"
 
 enum { WIDTH = 96, HEIGHT = 54, PIXELS = 400 };
 
@@ -151,20 +152,85 @@ TEST(TheErrorHoldsWhereThePlannerTracesEdges, 2)
     vplScene_Destroy(scene);
 }
 
-// Few pixels have most of the error; where they are traced, a few passes are enough for the others.
+// Renders, and adds up the rays: of all passes, and of the pixels at edges that the picture shows.
+static double raysOf(const vplScene* scene, const vplRenderOptions* o, vplImage** imageOut)
+{
+    vplRenderer* r;
+    vplRenderStats stats;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    for (bool done = false; !done;) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderer_GetImage(r, imageOut, &stats), VPL_SUCCESS);
+    const double edges = (double)r->edgePixels * r->edgePaths * r->judged.pathRays;
+    vplRenderer_Destroy(r);
+    return (double)stats.rays + edges;
+}
+
+// Few pixels have most of the error; where they are traced, a few passes are enough for the others. Together they need less than
+// a third of the rays of path tracing.
 TEST(TracedEdgesSpareRays, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     vplRenderOptions chosen = edgeOptions(0, "--method auto --passes 0 --max-error 0.03 --seed 2"),
                      paths = chosen;
-    vplRenderStats few, many;
+    vplImage *image, *traced;
     paths.method = VPL_METHOD_PATH;
-    vplImage* image = renderScene(scene, &chosen, &few);
-    vplImage_Destroy(renderScene(scene, &paths, &many));
-    if (!(3 * few.rays < many.rays)) {
-        fail_msg("%lld rays of passes, %lld of paths", (long long)few.rays, (long long)many.rays);
+    const double few = raysOf(scene, &chosen, &image), many = raysOf(scene, &paths, &traced);
+    if (!(3 * few < many)) {
+        fail_msg("%g rays of passes and edges, %g of paths", few, many);
     }
     assert_true(errorAgainstPaths(scene, image) <= 0.03);
     vplImage_Destroy(image);
+    vplImage_Destroy(traced);
     vplScene_Destroy(scene);
+}
+
+// Where many pixels have the error, tracing them would cost more than other ways: the planner does not go far beyond the rays of
+// path tracing.
+TEST(EdgesAreNotTracedWhereOtherWaysCostLess, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    vplRenderOptions o = edgeOptions(0, "--method auto --passes 0 --max-error 0.05 --size 64x36");
+    vplImage *image, *traced;
+    const double chosen = raysOf(scene, &o, &image);
+    o.method = VPL_METHOD_PATH;
+    const double paths = raysOf(scene, &o, &traced);
+    if (!(chosen < 1.5 * paths)) {
+        fail_msg("%g rays of passes and edges, %g of paths", chosen, paths);
+    }
+    vplImage_Destroy(image);
+    vplImage_Destroy(traced);
+    vplScene_Destroy(scene);
+}
+
+// Lamps that are brighter by a power of two: errors are relative, so that the planner decides the same, and the picture is
+// brighter by that factor, bit by bit.
+TEST(TheUnitOfLightDecidesNothing, 2)
+{
+    static const float factors[] = {1, 8, 0x1p-6f};
+    vplRenderStats stats[3];
+    vplImage* images[3];
+    for (int i = 0; i < 3; i++) {
+        vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+        const vplRenderOptions o = edgeOptions(0, "--method auto --passes 0 --max-error 0.1");
+        for (int k = 0; k < vplScene_GetMaterialCount(scene); k++) {
+            vplMaterialDef material = *vplScene_GetMaterial(scene, k);
+            material.emission = (vplRgb){factors[i] * material.emission.r, factors[i] * material.emission.g,
+                                         factors[i] * material.emission.b};
+            assert_int_equal(vplScene_SetMaterial(scene, k, &material), VPL_SUCCESS);
+        }
+        images[i] = renderScene(scene, &o, &stats[i]);
+        vplScene_Destroy(scene);
+    }
+    for (int i = 1; i < 3; i++) {
+        assert_true(stats[i].passes == stats[0].passes && stats[i].rays == stats[0].rays);
+        assert_true(stats[i].relativeErrorEstimate == stats[0].relativeErrorEstimate);
+        for (int k = 0; k < 3 * WIDTH * HEIGHT; k++) {
+            assert_true(images[i]->pixels[k] == factors[i] * images[0]->pixels[k]);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        vplImage_Destroy(images[i]);
+    }
 }
