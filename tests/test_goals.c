@@ -191,6 +191,29 @@ TEST(OptionsOfOneMethodChooseIt, 1)
     vplScene_Destroy(scene);
 }
 
+// A look is taken at surfaces only: at none, all of it is 0.
+TEST(ThePlannerLooksAtSurfaces, 1)
+{
+    for (int surfaces = 0; surfaces < 2; surfaces++) {
+        vplScene* scene = surfaces > 0 ? loadScene(context, "room.json") : sceneOf(context, 0.5f);
+        const vplRenderOptions o = smallOptions();
+        vplPlan* plan;
+        aim(scene, (vplVec3){0, 1, 3}, (vplVec3){0, 1, 0});
+        addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 2, 0}, (vplVec3){0, -1, 0}, 1);
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        const vplLook* look = &plan->look;
+        if (surfaces > 0) {
+            assert_true(look->points > 0 && look->lights > 0 && look->rays > look->points);
+            assert_true(look->background < 1 && look->open < 1 && look->reaching > 0 && look->worth > 0);
+        } else {
+            assert_true(look->points == 0 && look->lights == 0 && look->rays == 0);
+            assert_true(look->background == 0 && look->open == 0 && look->reaching == 0 && look->worth == 0);
+        }
+        vplPlan_Destroy(plan);
+        vplScene_Destroy(scene);
+    }
+}
+
 TEST(WordsOfQualityStandForErrorsAndTimes, 1)
 {
     vplScene* scene = loadScene(context, "room.json");
