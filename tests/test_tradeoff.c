@@ -203,13 +203,12 @@ TEST_ALONE(TheReportSaysWhyMoreLightsDoNotHelp)
     } rows[] = {{FAMILY_UNSHADOWED,
                  {0.5, 0.32, 0.3, 0.3},
                  "Virtual lights without shadows stop getting better at about <strong>30.0 %</strong>, "
-                 "however many there "
-                 "are: they shine through walls"},
+                 "however many there are: they shine through walls"},
                 {FAMILY_MAP,
                  {0.5, 0.1, 0.05, 0.05},
                  "Virtual lights with shadow maps stop getting better at about <strong>5.0 %</strong>, "
-                 "however many there "
-                 "are: what is left is the clamp near lights and the resolution of the shadow maps"},
+                 "however many there are: what is left is the clamp near lights and the resolution of the "
+                 "shadow maps"},
                 {FAMILY_RAY, {0.5, 0.15, 0.05, 0.015}, NULL}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         Text html = {0};
