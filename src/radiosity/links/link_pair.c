@@ -207,8 +207,20 @@ static bool isNear(const Pair* pair)
     return vplLength(vplSub(pair->q->centre, pair->p->centre)) < NEAR * larger;
 }
 
+// How far a function with this slope falls from the middle of a node to any of its sides.
+static double fallOver(const vplLinkNode* node, const double slope[3])
+{
+    double fall = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double a = slope[axis] * (double)vplComponent(node->least, axis),
+                     b = slope[axis] * (double)vplComponent(node->most, axis);
+        fall -= a < b ? a : b;
+    }
+    return fall;
+}
+
 // Slopes of a group stay, those of a side, which has one value, do not. Slopes are lowered where the function
-// would be negative at some points.
+// would be negative at some pair of sides.
 static void keep(const Pair* pair, const Measure* m)
 {
     const double area = (double)fmaxf(pair->p->area, pair->q->area);
@@ -216,19 +228,10 @@ static void keep(const Pair* pair, const Measure* m)
     pair->answer->verdict = mean > 0 ? VPL_LINK_KEEP : VPL_LINK_NONE;
     pair->answer->fit.mean = (float)(area * mean);
     const vplLinkNode* nodes[2] = {pair->p, pair->q};
-    const vplLinkPoints* points[2] = {&pair->work->points[pair->ids->p], &pair->work->points[pair->ids->q]};
     const double* slopes[2] = {m->p, m->q};
     double fall = 0;
     for (int k = 0; k < 2; k++) {
-        double most = 0;
-        for (int i = 0; i < VPL_LINK_POINTS && nodes[k]->count > 1; i++) {
-            double at = 0;
-            for (int axis = 0; axis < 3; axis++) {
-                at -= slopes[k][axis] * (double)points[k]->place[axis][i];
-            }
-            most = at > most ? at : most;
-        }
-        fall += most;
+        fall += nodes[k]->count > 1 ? fallOver(nodes[k], slopes[k]) : 0;
     }
     const double scale = area * (fall > mean ? mean / fall : 1);
     for (int axis = 0; axis < 3; axis++) {
