@@ -18,22 +18,34 @@ static const float TURNED = 0.9f;
 // Form factors up to this fraction of the allowed error are tiny.
 static const double TINY = 0.25;
 
-// Groups between which all rays are blocked exchange nothing if their unoccluded form factor is below this
-// multiple of the allowed error.
-static const double HIDDEN = 4;
+// A pair of groups of which all rays are blocked counts as hidden after so many, for each time that its unoccluded
+// form factor is the allowed error.
+static const double HIDING_RAYS = 16;
+
+// The same where rows are scaled to what rays find, and so are not darker for what the test misses: fewer, or two for
+// each pair of sides, of which each would cast four. Elsewhere, a room that is lit through a door ajar would lose a
+// twentieth of its light.
+static const double FEWER_HIDING_RAYS = 4, HIDING_RAYS_OF_SIDES = 2;
+
+// There, pairs of groups of at least so many sides are tested for being hidden even if their parents are not.
+static const double MANY_PAIRS = 16;
 
 // The fraction of a pair's bound, beyond the estimate, that counts as an error, since points miss peaks.
 static const double PEAK = 0.05;
 
 // The error that is allowed to a link that something blocks in part, as a fraction of that of others: errors of
 // shadows have the same sign over many links. Without, a dark room behind a door ajar errs 2.3 times as much.
-static const double BLOCKED = 0.5;
+static const double SHADOWED = 0.5;
 
 // A link is blocked in part if rays let through less than this fraction.
 static const double OPEN = 0.98;
 
 // Up to so many sides a link may err by as much as is asked for; beyond by less, as one over the root of their number.
 enum { MANY_SIDES = 4000 };
+
+// Where patches are groups of triangles, links may err by so many times what is asked for: their relmse in Sponza,
+// Sibenik and Conference is that of all pairs, with a quarter or eight times the error as well.
+static const double GROUPED = 4;
 
 // The first rays of a pair of groups: one packet.
 enum { FEW_RAYS = VPL_RAY_PACKET };
@@ -62,8 +74,16 @@ static const vplPatchSide* firstSide(const Pair* pair, const vplLinkNode* node)
 // The error of patches falls with their number, and that of links must fall with it; groups of triangles err by more.
 double vplAllowedLinkError(const vplPatchSides* sides, const vplLinkDef* def)
 {
-    const bool less = sides->count > MANY_SIDES && sides->patches->groupCount == 0;
-    return less ? def->error * sqrt((double)MANY_SIDES / sides->count) : def->error;
+    if (sides->patches->groupCount > 0) {
+        return GROUPED * def->error;
+    }
+    return sides->count > MANY_SIDES ? def->error * sqrt((double)MANY_SIDES / sides->count) : def->error;
+}
+
+// Rows are scaled to the share of light that rays find (link_rows.c).
+static bool isScaled(const Pair* pair)
+{
+    return pair->work->sides->patches->groupCount > 0 && pair->work->def->rowSums == VPL_ROW_SUMS_USUAL;
 }
 
 // ---- bounds
@@ -305,31 +325,73 @@ static void findErrors(const Pair* pair, Measure* m)
     m->errorQ *= pair->q->count > 1 ? pair->sent : 0;
 }
 
-// Casts rays unless nothing is in the way, finds which fraction of the exchange they let through, and measures what
-// is left. A rough pair that will be divided needs none yet, and few are enough to see that a rough pair is visible, or
-// where little is exchanged.
-static void darken(const Pair* pair, vplLinkTerms* terms, bool rough, Measure* m)
+// ---- what is between groups
+
+static double pairsOfSides(const Pair* pair)
+{
+    return (double)pair->p->count * (double)pair->q->count;
+}
+
+// The rays after which a pair counts as hidden if all were blocked.
+static double raysToHide(const Pair* pair, double open)
+{
+    const double times = open / pair->work->allowed;
+    return isScaled(pair) ? fmin(FEWER_HIDING_RAYS * times, HIDING_RAYS_OF_SIDES * pairsOfSides(pair))
+                          : HIDING_RAYS * times;
+}
+
+// The error of a pair of groups that comes from chance alone, with all rays, where these let through a fraction `v`:
+// each point casts some of them.
+static double chanceError(double open, double v)
+{
+    return 2 * open * sqrt(v * (1 - v) * VPL_LINK_POINTS / VPL_MOST_LINK_RAYS);
+}
+
+// What was found between two groups.
+typedef enum Sight {
+    CLEAR,   // nothing
+    HIDDEN,  // something everywhere
+    BLOCKED, // something, which `seen` knows
+    DIVIDED  // there are not enough rays to tell, for such a pair
+} Sight;
+
+// The first rays, and more while all are blocked and the pair does not count as hidden. A search of what is in the way
+// follows only if these find nothing. Returns the number of rays.
+static int lookBetween(const Pair* pair, const vplLinkTerms* terms, double hide, vplLinkSeen* seen)
+{
+    cast(pair, terms, 0, FEW_RAYS, seen);
+    int rays = FEW_RAYS;
+    for (; rays < VPL_MOST_LINK_RAYS && !(seen->visible > 0) && (rays < hide || !(seen->open > 0));
+         rays += FEW_RAYS) {
+        cast(pair, terms, rays, rays + FEW_RAYS, seen);
+    }
+    return rays;
+}
+
+// Finds what is between two groups. A rough pair will be divided, and needs no more rays than tell whether it is hidden.
+static Sight findBetween(const Pair* pair, const vplLinkTerms* terms, bool rough, double open,
+                         vplLinkSeen* seen)
 {
     vplLinkAnswer* answer = pair->answer;
-    const double open = pair->sent * m->mean, allowed = pair->work->allowed;
-    if (isClear(pair)) {
-        answer->visible = true;
-        return;
+    const double allowed = pair->work->allowed, hide = raysToHide(pair, open);
+    if (answer->clear || (rough && hide > VPL_MOST_LINK_RAYS)) {
+        answer->visible = isClear(pair);
+        return answer->visible ? CLEAR : DIVIDED;
     }
-    if (rough && open > HIDDEN * allowed) {
-        return;
+    const int rays = lookBetween(pair, terms, hide, seen);
+    answer->visible = seen->visible > 0;
+    if (answer->visible && seen->visible == seen->open && isClear(pair)) {
+        return CLEAR;
     }
-    vplLinkSeen seen = {.open = 0};
-    cast(pair, terms, 0, FEW_RAYS, &seen);
-    if (open > allowed && !(rough && seen.visible > 0)) {
-        cast(pair, terms, FEW_RAYS, VPL_MOST_LINK_RAYS, &seen);
+    if (!answer->visible) {
+        return HIDDEN;
     }
-    answer->visible = seen.visible > 0;
-    if (seen.visible < seen.open) {
-        vplDarkenTerms(&seen, terms);
-        *m = measureOf(pair, terms);
-        findErrors(pair, m);
+    const double v = seen->visible / seen->open;
+    if (rough || (isScaled(pair) && v < OPEN && chanceError(open, v) > SHADOWED * allowed)) {
+        return DIVIDED;
     }
+    cast(pair, terms, rays, open > allowed ? VPL_MOST_LINK_RAYS : rays, seen);
+    return BLOCKED;
 }
 
 // Decides about groups by points and rays.
@@ -345,13 +407,18 @@ static void measureGroups(const Pair* pair, double bound, vplLinkTerms* terms)
         answer->verdict = bound <= TINY * allowed ? VPL_LINK_NONE : divideLarger(pair);
         return;
     }
-    if (!answer->visible || !rough) {
-        darken(pair, terms, rough, &m);
+    vplLinkSeen seen = {.open = 0};
+    const bool look = !answer->visible || !rough || (isScaled(pair) && pairsOfSides(pair) >= MANY_PAIRS);
+    const Sight sight = look ? findBetween(pair, terms, rough, open, &seen) : DIVIDED;
+    if (sight == BLOCKED && seen.visible < seen.open) {
+        vplDarkenTerms(&seen, terms);
+        m = measureOf(pair, terms);
+        findErrors(pair, &m);
     }
-    const double limit = pair->sent * m.mean < OPEN * open ? BLOCKED * allowed : allowed;
-    if (!answer->visible && open <= HIDDEN * allowed) {
+    const double limit = pair->sent * m.mean < OPEN * open ? SHADOWED * allowed : allowed;
+    if (sight == HIDDEN) {
         answer->verdict = VPL_LINK_NONE;
-    } else if (rough || m.errorP + m.errorQ > limit) {
+    } else if (rough || sight == DIVIDED || m.errorP + m.errorQ > limit) {
         answer->verdict = divideWorse(pair, m.errorP, m.errorQ);
     } else {
         keep(pair, &m);
