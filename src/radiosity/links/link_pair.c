@@ -390,7 +390,8 @@ static Sight findBetween(const Pair* pair, const vplLinkTerms* terms, bool rough
     if (rough || (isScaled(pair) && v < OPEN && chanceError(open, v) > SHADOWED * allowed)) {
         return DIVIDED;
     }
-    cast(pair, terms, rays, open > allowed ? VPL_MOST_LINK_RAYS : rays, seen);
+    const int wanted = isScaled(pair) ? FEW_RAYS * (int)fmin(ceil(open / allowed), 4) : VPL_MOST_LINK_RAYS;
+    cast(pair, terms, rays, open > allowed ? wanted : rays, seen);
     return BLOCKED;
 }
 
