@@ -83,7 +83,7 @@ static vplResult findEnclosed(EnclosedTest* t, vplArena* scratch, int64_t* rays)
 
 // No scale is larger: a side whose links sum to next to nothing, where rays say that they should not, keeps what it
 // has. Without, the rounding of such a sum was blown up, and light in Sibenik grew without bound.
-static const double MOST_SCALE = 8;
+static const double MOST_SCALE = 1024;
 
 // One round: moves the sum of each row half of the way to 1; sides that are not enclosed only move if above
 // 1. The last round moves rows above 1 the whole way, which leaves none above, since no scale grows.
