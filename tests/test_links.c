@@ -327,6 +327,60 @@ TEST(NoLightGoesThroughAWall, 2)
     closeRoom(&room);
 }
 
+// The linear functions that links stand for are checked at eight points of either group, but are used at all sides.
+// They must be negative at none: in Sponza, light grew without bound.
+TEST(NoSideTakesLightFromAnother, 2)
+{
+    Room room;
+    vplLinkDef def = vplDefaultLinkDef();
+    def.error = 0.004; // large groups
+    openRoom(&room, boxInRoom(context), 500);
+    linkRoom(&room, &def);
+    vplRgb* b = evenLight(&room);
+    memset(b, 0, (size_t)room.sides->count * sizeof *b);
+    double least = 0, most = 0;
+    for (int from = 0; from < room.sides->count; from++) {
+        b[from].r = 1;
+        vplRgb* e = gather(&room, NULL, b);
+        for (int i = 0; i < room.sides->count; i++) {
+            least = fmin(least, (double)e[i].r);
+            most = fmax(most, (double)e[i].r);
+        }
+        b[from].r = 0;
+        free(e);
+    }
+    assert_true(most > 0.1 && most <= 1);
+    assertNear(least, 0, 1e-7, "least exchange", 0);
+    free(b);
+    closeRoom(&room);
+}
+
+// Rows of links that carry next to nothing are not scaled to 1: what they carry may be the rounding of nothing.
+TEST(RoundingIsNotScaledUp, 2)
+{
+    Room room;
+    vplLinkDef def = vplDefaultLinkDef();
+    openRoom(&room, closedCubeScene(context, 0.5f, 1), 100);
+    linkRoom(&room, &def);
+    struct vplLinkTree* tree = room.links->tree;
+    for (int64_t i = 0; i < tree->firstOf[tree->nodeCount]; i++) {
+        vplLinkEnd* end = &tree->ends[i];
+        end->factor *= 1e-12f;
+        for (int axis = 0; axis < 3; axis++) {
+            end->receiverSlope[axis] *= 1e-12f;
+            end->senderSlope[axis] *= 1e-12f;
+        }
+    }
+    float* sums = calloc((size_t)room.sides->count, sizeof *sums);
+    def.rowSums = VPL_ROW_SUMS_NORMALISE;
+    assert_int_equal(vplLinks_FitRows(room.links, room.sides, &def, sums), VPL_SUCCESS);
+    for (int i = 0; i < room.sides->count; i++) {
+        assert_true(sums[i] < 2e-12f && tree->scale[i] >= 1 && tree->scale[i] <= 1024);
+    }
+    free(sums);
+    closeRoom(&room);
+}
+
 // ---- cost
 
 TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
@@ -350,6 +404,67 @@ TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
     // Measured: 3.2 times the links and 2.3 times the rays, of which 32 per side are the side's own; 8.7 and 3.7 kB
     // per side.
     assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 5 * rays[0]);
+}
+
+// The unoccluded form factor of two nodes, as points find it.
+static double openFactor(const vplLinkWork* work, int p, int q)
+{
+    const vplLinkPoints *from = &work->points[p], *to = &work->points[q];
+    const vplLinkNode *a = &work->tree->nodes[p], *b = &work->tree->nodes[q];
+    vplLinkTerms terms;
+    vplGetRadiosityKernels(work->sides->context->isa)->linkTerms(from, to, &terms);
+    double mean = 0;
+    for (int i = 0; i < VPL_LINK_POINTS; i++) {
+        mean += 0.5 * (double)(from->weight[i] * terms.rows[i] + to->weight[i] * terms.columns[i]);
+    }
+    return mean * fmax((double)a->area * (double)a->brightness, (double)b->area * (double)b->brightness);
+}
+
+static void judgeRays(const vplLinkWork* work, int p, int q, int count[2])
+{
+    const vplLinkNode *a = &work->tree->nodes[p], *b = &work->tree->nodes[q];
+    const bool disjoint = a->first + a->count <= b->first || b->first + b->count <= a->first;
+    if (!disjoint || (a->count == 1 && b->count == 1)) {
+        return;
+    }
+    const vplLinkAnswer answer = vplJudgePair(work, &(vplLinkPair){.p = p, .q = q, .blocker = -1});
+    const double times = openFactor(work, p, q) / work->allowed;
+    assert_true(answer.rays <= VPL_MOST_LINK_RAYS);
+    if (answer.verdict == VPL_LINK_NONE && answer.rays > 0) {
+        assert_true(answer.rays < 16 * times + 16);
+        count[0]++;
+    } else if (times <= 1) {
+        assert_true(answer.rays <= 16);
+        count[1]++;
+    }
+}
+
+// Pairs that carry less than the allowed error cast up to 16 rays; hidden ones 16 for each time that they carry it.
+TEST(RaysFollowWhatALinkCarries, 2)
+{
+    Room room;
+    vplLinkDef def = vplDefaultLinkDef();
+    struct vplLinkTree tree = {.nodes = NULL};
+    vplArena* arena = vplArena_Create(context);
+    int count[2] = {0, 0};
+    def.error = 0.001;
+    openRoom(&room, boxInRoom(context), 300);
+    assert_int_equal(vplLinkTree_Build(arena, room.sides, &tree), VPL_SUCCESS);
+    vplLinkPoints* points = vplArena_Alloc(arena, (size_t)tree.nodeCount, sizeof *points);
+    assert_int_equal(vplArena_Check(arena), VPL_SUCCESS);
+    const vplLinkWork work = {
+        .sides = room.sides, .tree = &tree, .def = &def, .allowed = def.error, .points = points};
+    for (int node = 0; node < tree.nodeCount; node++) {
+        vplLinkPoints_Draw(&work, node);
+    }
+    for (int p = 0; p < tree.nodeCount; p++) {
+        for (int q = p + 1; q < tree.nodeCount; q++) {
+            judgeRays(&work, p, q, count);
+        }
+    }
+    assert_true(count[0] > 1000 && count[1] > 1000);
+    vplArena_Destroy(arena);
+    closeRoom(&room);
 }
 
 // Judging some pairs of each level tells how much memory all links take.

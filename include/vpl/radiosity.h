@@ -155,11 +155,12 @@ double vplPointFormFactor(vplVec3 point, vplVec3 normal, const vplVec3 triangle[
 typedef struct vplLinkDef {
     // Links are divided until the exchange of two groups differs from a linear function of the place on either by
     // less than this fraction of all that their receiver gets, (0, 1]; default 0.00015; half of it where something is
-    // between them. Beyond 4,000 sides, none of which is a group of triangles, it falls with the root of their
-    // number. The number of links rises by 1.7 to 1.9 where the error is halved.
+    // between them; four times as much where sides are groups of triangles, which err by more themselves. Without
+    // groups, beyond 4,000 sides, it falls with the root of their number. The number of links rises by 1.7 to 1.9 where
+    // the error is halved.
     double error;
-    // Shadow rays between two sides, [1, 1024], of which up to 64 are cast; default 4. Groups take 16 to 64, unless
-    // nothing is between them.
+    // Shadow rays between two sides, [1, 1024], of which up to 64 are cast; default 4. Groups take 16 to 64, more where
+    // they exchange more, unless nothing is between their parents.
     int samples;
     // Default VPL_ROW_SUMS_USUAL: normalise sides from which all of 32 rays hit sides and whose form factors sum to
     // 0.97 or more, clamp others.

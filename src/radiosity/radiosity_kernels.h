@@ -92,7 +92,8 @@ typedef struct vplLinkPoints {
     float at[3][VPL_LINK_POINTS], normal[3][VPL_LINK_POINTS]; // [axis]
     float place[3][VPL_LINK_POINTS];                          // from the node's middle, in radii
     float weight[VPL_LINK_POINTS], slope[3][VPL_LINK_POINTS];
-    int triangle[VPL_LINK_POINTS];
+    float origin[3][VPL_LINK_POINTS]; // of rays from there
+    int skipFirst[VPL_LINK_POINTS], skipCount[VPL_LINK_POINTS];
 } vplLinkPoints;
 
 // cos cos / (pi r^2) between point i of p and point k of q, 1/m^2; 0 where one point is behind the other's

@@ -48,10 +48,13 @@ static void drawPoints(const vplLinkWork* work, int node, vplLinkPoints* out)
         const vplSidePoint point = vplPatchSide_SampleCell(
             work->sides, side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
             vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
-        out->triangle[k] = point.triangle;
+        const vplRay ray = vplPatchSides_Leave(work->sides, &point, point.normal);
+        out->skipFirst[k] = ray.skip.first;
+        out->skipCount[k] = ray.skip.count;
         for (int axis = 0; axis < 3; axis++) {
             out->at[axis][k] = vplComponent(point.at, axis);
             out->normal[axis][k] = vplComponent(point.normal, axis);
+            out->origin[axis][k] = vplComponent(ray.origin, axis);
             out->place[axis][k] = scale * (vplComponent(point.at, axis) - vplComponent(n->middle, axis));
         }
     }
@@ -115,11 +118,9 @@ void vplLinkPoints_Draw(const vplLinkWork* work, int node)
 
 // ---- rays
 
-static vplSidePoint pointOf(const vplLinkPoints* points, int i)
+static vplVec3 pointOf(const float from[3][POINTS], int i)
 {
-    return (vplSidePoint){vplVec(points->at[0][i], points->at[1][i], points->at[2][i]),
-                          vplVec(points->normal[0][i], points->normal[1][i], points->normal[2][i]),
-                          points->triangle[i]};
+    return vplVec(from[0][i], from[1][i], from[2][i]);
 }
 
 // The ends of a ray. Points are in the order of area, so any four consecutive rays leave from all quarters of a
@@ -140,7 +141,6 @@ static int toPoint(const vplLinkSight* sight, int ray)
 static void join(const vplLinkWork* work, const vplLinkSight* sight, int first, vplLinkSeen* seen, int* rays)
 {
     const vplLinkPoints *p = sight->p, *q = sight->q;
-    const vplPatchSides* sides = work->sides;
     int from[VPL_RAY_PACKET], to[VPL_RAY_PACKET];
     float amount[VPL_RAY_PACKET];
     vplRayPacket packet;
@@ -149,16 +149,15 @@ static void join(const vplLinkWork* work, const vplLinkSight* sight, int first, 
         const int i = from[l] = fromPoint(sight, first + l), k = to[l] = toPoint(sight, first + l);
         amount[l] = first + l < sight->to ? sight->terms->of[i][k] : 0;
         if (amount[l] > 0) {
-            const vplSidePoint start = pointOf(p, i), end = pointOf(q, k);
-            const vplVec3 way = vplWayToLight(end.at, end.normal, start.at);
-            const vplRay ray = vplPatchSides_Leave(sides, &start, way);
+            const vplVec3 way = vplWayToLight(pointOf(q->at, k), pointOf(q->normal, k), pointOf(p->at, i));
+            const vplRay ray = {pointOf(p->origin, i), way, {p->skipFirst[i], p->skipCount[i]}};
             vplRayPacket_Set(&packet, l, &ray);
             seen->openP[i] += amount[l];
             seen->openQ[k] += amount[l];
             seen->open += (double)amount[l];
         }
     }
-    *rays += vplGeometry_Darken(sides->patches->geometry, &packet, 1, amount);
+    *rays += vplGeometry_Darken(work->sides->patches->geometry, &packet, 1, amount);
     for (int l = 0; l < VPL_RAY_PACKET; l++) {
         seen->visibleP[from[l]] += amount[l];
         seen->visibleQ[to[l]] += amount[l];

@@ -81,6 +81,10 @@ static vplResult findEnclosed(EnclosedTest* t, vplArena* scratch, int64_t* rays)
 
 // ---- scales
 
+// No scale is larger: a side whose links sum to next to nothing, where rays say that they should not, keeps what it
+// has. Without, the rounding of such a sum was blown up, and light in Sibenik grew without bound.
+static const double MOST_SCALE = 1024;
+
 // One round: moves the sum of each row half of the way to 1; sides that are not enclosed only move if above
 // 1. The last round moves rows above 1 the whole way, which leaves none above, since no scale grows.
 static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, const EnclosedTest* test,
@@ -91,10 +95,9 @@ static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, co
         if (last) {
             tree->scale[i] = (float)(sum > MARGIN ? scale * MARGIN / sum : scale);
         } else if (sum > 0) {
-            const double wanted = scale / sqrt(sum);
-            tree->scale[i] = (float)(test->target != NULL ? scale * sqrt((double)test->target[i] / sum)
-                                     : !test->enclosed[i] && wanted > 1 ? 1
-                                                                        : wanted);
+            const double target = test->target != NULL ? (double)test->target[i] : 1;
+            const double most = test->target != NULL || test->enclosed[i] ? MOST_SCALE : 1;
+            tree->scale[i] = (float)fmin(scale * sqrt(target / sum), most);
         }
     }
 }

@@ -123,6 +123,7 @@ static vplVec3 middleOf(const vplPatchSide* side, bool isGroup)
 static void sumNode(const Build* b, vplLinkNode* node)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    float least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
     double normal[3] = {0}, middle[3] = {0}, area = 0, emitted = 0;
     for (int i = 0; i < node->count; i++) {
         const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
@@ -130,7 +131,10 @@ static void sumNode(const Build* b, vplLinkNode* node)
         emitted += (double)s->area * vplRgbMean(s->emission);
         const vplVec3 at = middleOf(s, vplPatches_IsGroup(b->patches, s->patch));
         for (int axis = 0; axis < 3; axis++) {
-            middle[axis] += (double)s->area * (double)vplComponent(at, axis);
+            const float x = vplComponent(at, axis);
+            least[axis] = x < least[axis] ? x : least[axis];
+            most[axis] = x > most[axis] ? x : most[axis];
+            middle[axis] += (double)s->area * (double)x;
             normal[axis] += (double)s->area * (double)vplComponent(s->normal, axis);
         }
         for (Corner c = firstCorner(b, s); c.left > 0; nextCorner(b, s, &c)) {
@@ -151,6 +155,8 @@ static void sumNode(const Build* b, vplLinkNode* node)
         middle[axis] /= area;
     }
     node->middle = vplVec((float)middle[0], (float)middle[1], (float)middle[2]);
+    node->least = vplSub(vplVec(least[0], least[1], least[2]), node->middle);
+    node->most = vplSub(vplVec(most[0], most[1], most[2]), node->middle);
     const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     node->normal = length > 1e-3 * area ? vplVec((float)(normal[0] / length), (float)(normal[1] / length),
                                                  (float)(normal[2] / length))
@@ -178,6 +184,8 @@ static void measureNode(const Build* b, vplLinkNode* node)
     }
     cosine = cosine < -1 ? -1 : cosine;
     node->radius = (float)radius;
+    node->least = vplScale(radius > 0 ? 1 / node->radius : 0, node->least);
+    node->most = vplScale(radius > 0 ? 1 / node->radius : 0, node->most);
     node->cosSpread = (float)cosine;
     node->cosTurn = (float)turn;
     node->sinSpread = (float)sqrt(1 - cosine * cosine);

@@ -19,6 +19,7 @@ typedef struct vplLinkNode {
     vplVec3 low, high, centre;  // bounds, metres, and their centre
     float radius;               // of the sphere around `centre`
     vplVec3 middle;             // the centroid of the open cells
+    vplVec3 least, most;        // bounds of the middles of its sides, from `middle` in radii
     vplVec3 normal;             // unit: the mean weighted by area, or any if that is 0
     float cosSpread, sinSpread; // of the largest angle between `normal` and a triangle's normal
     float cosTurn;              // of that between `normal` and a side's, which is the mean over a group

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Finds what is between two nodes, with as many rays as what they exchange asks for.
+// Based on: Eric Haines and John Wallace, Shaft Culling for Efficient Ray-Cast Radiosity, Eurographics Workshop on
+// Rendering 1991. Departs: rays come first, and the shaft is searched only if none of them is blocked.
+#include "math/scalar.h"
+#include "math/vec.h"
+#include "radiosity/factors/shaft.h"
+#include "radiosity/links/link_pair.h"
+
+#include <math.h>
+
+// A pair of groups of which all rays are blocked counts as hidden after so many, for each time that its unoccluded
+// form factor is the allowed error.
+static const double HIDING_RAYS = 16;
+
+// The same where rows are scaled to what rays find, and so are not darker for what the test misses: fewer, or two for
+// each pair of sides, of which each would cast four. Elsewhere, a room that is lit through a door ajar would lose a
+// twentieth of its light.
+static const double FEWER_HIDING_RAYS = 4, HIDING_RAYS_OF_SIDES = 2;
+
+// The first rays of a pair of groups: one packet.
+enum { FEW_RAYS = VPL_RAY_PACKET };
+
+// A number that looks random.
+static unsigned startOf(int32_t p, int32_t q)
+{
+    const uint32_t mixed = ((uint32_t)p * 0x9e3779b1u ^ (uint32_t)q * 0x85ebca77u) * 0xc2b2ae3du;
+    return mixed >> 26;
+}
+
+static vplShaftEnd endOf(const vplJudgedPair* pair, const vplLinkNode* node)
+{
+    const vplPatchSide* side = vplFirstSide(pair, node);
+    return (vplShaftEnd){.low = {node->low.x, node->low.y, node->low.z},
+                         .high = {node->high.x, node->high.y, node->high.z},
+                         .flat = node->flat,
+                         .normal = side->normal,
+                         .at = side->corners[0]};
+}
+
+// Tests whether nothing is between the nodes, and remembers it for their parts.
+static bool isClear(const vplJudgedPair* pair)
+{
+    if (!pair->answer->clear) {
+        const vplShaftEnd p = endOf(pair, pair->p), q = endOf(pair, pair->q);
+        const float largest = fmaxf(fmaxf(vplLargestOf(pair->p->low), vplLargestOf(pair->p->high)),
+                                    fmaxf(vplLargestOf(pair->q->low), vplLargestOf(pair->q->high)));
+        pair->answer->clear = vplShaft_IsClear(pair->work->sides->patches->geometry, &p, &q,
+                                               largest * 0x1p-21f, &pair->answer->blocker);
+    }
+    return pair->answer->clear;
+}
+
+void vplCastPairRays(const vplJudgedPair* pair, const vplLinkTerms* terms, int from, int to,
+                     vplLinkSeen* seen)
+{
+    const vplLinkSight sight = {.p = &pair->work->points[pair->ids->p],
+                                .q = &pair->work->points[pair->ids->q],
+                                .terms = terms,
+                                .start = startOf(pair->ids->p, pair->ids->q),
+                                .from = from,
+                                .to = to};
+    vplCastLinkRays(pair->work, &sight, seen, &pair->answer->rays);
+}
+
+// The rays after which a pair counts as hidden if all were blocked.
+static double raysToHide(const vplJudgedPair* pair, double open)
+{
+    const double times = open / pair->work->allowed;
+    return vplRowsAreScaled(pair)
+               ? fmin(FEWER_HIDING_RAYS * times, HIDING_RAYS_OF_SIDES * vplPairsOfSides(pair))
+               : HIDING_RAYS * times;
+}
+
+// The error of a pair of groups that comes from chance alone, with all rays, where these let through a fraction `v`:
+// each point casts some of them.
+static double chanceError(double open, double v)
+{
+    return 2 * open * sqrt(v * (1 - v) * VPL_LINK_POINTS / VPL_MOST_LINK_RAYS);
+}
+
+// The first rays, and more while all are blocked and the pair does not count as hidden. A search of what is in the way
+// follows only if these find nothing. Returns the number of rays.
+static int lookBetween(const vplJudgedPair* pair, const vplLinkTerms* terms, double hide, vplLinkSeen* seen)
+{
+    vplCastPairRays(pair, terms, 0, FEW_RAYS, seen);
+    int rays = FEW_RAYS;
+    for (; rays < VPL_MOST_LINK_RAYS && !(seen->visible > 0) && (rays < hide || !(seen->open > 0));
+         rays += FEW_RAYS) {
+        vplCastPairRays(pair, terms, rays, rays + FEW_RAYS, seen);
+    }
+    return rays;
+}
+
+vplLinkView vplFindBetween(const vplJudgedPair* pair, const vplLinkTerms* terms, bool rough, double open,
+                           vplLinkSeen* seen)
+{
+    vplLinkAnswer* answer = pair->answer;
+    const double allowed = pair->work->allowed, hide = raysToHide(pair, open);
+    if (answer->clear || (rough && hide > VPL_MOST_LINK_RAYS)) {
+        answer->visible = isClear(pair);
+        return answer->visible ? VPL_VIEW_CLEAR : VPL_VIEW_DIVIDED;
+    }
+    const int rays = lookBetween(pair, terms, hide, seen);
+    answer->visible = seen->visible > 0;
+    if (answer->visible && seen->visible == seen->open && isClear(pair)) {
+        return VPL_VIEW_CLEAR;
+    }
+    if (!answer->visible) {
+        return VPL_VIEW_HIDDEN;
+    }
+    const double v = seen->visible / seen->open;
+    if (rough ||
+        (vplRowsAreScaled(pair) && v < VPL_LINK_OPEN && chanceError(open, v) > VPL_LINK_SHADOWED * allowed)) {
+        return VPL_VIEW_DIVIDED;
+    }
+    const bool less = vplRowsAreScaled(pair) && open < 4 * allowed;
+    const int wanted = less ? FEW_RAYS * ((int)(open / allowed) + 1) : VPL_MOST_LINK_RAYS;
+    vplCastPairRays(pair, terms, rays, open > allowed ? wanted : rays, seen);
+    return VPL_VIEW_BLOCKED;
+}
