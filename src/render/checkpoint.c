@@ -55,7 +55,8 @@ static vplStateHeader describe(const vplRenderer* r, const vplByteBuffer* text)
                         .turn = {r->turn.rays, r->turn.pathSquare},
                         .side = (uint64_t)r->turn.side,
                         .edges = {(uint32_t)r->edgePixels, (uint32_t)r->edgePaths},
-                        .tries = (uint64_t)r->edgeTries};
+                        .tries = (uint64_t)r->edgeTries,
+                        .coarser = r->coarserSquare};
     for (int i = 0; i < vplState_CountTracers(parts); i++) {
         vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
         h.samples = (uint32_t)vplPathTracer_GetSums(tracer).samples;
@@ -92,7 +93,7 @@ vplResult vplRenderer_Save(vplRenderer* r, const char* path)
 {
     REQUIRE(vplRenderer_ContextOf(r), r, path);
     vplContext* context = r->runner.run.context;
-    if (vplState_PartsOf(r->plan) == 0) {
+    if (!vplState_Exists(r)) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "a render that is drawn at once has no state to save; renders of several passes have "
                        "one (--passes, --budget, --max-error), and path tracing");

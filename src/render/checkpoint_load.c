@@ -115,7 +115,7 @@ static vplResult checkRender(const Loading* l)
     vplFree(r->runner.run.context, text.bytes);
     TRY(result);
     const uint32_t parts = vplState_PartsOf(r->plan);
-    if (parts == 0 || h->parts != (h->passes > 0 ? parts : 0)) {
+    if (!vplState_Exists(r) || h->parts != (h->passes > 0 ? parts : 0)) {
         return vplFail(
             context, VPL_INVALID_ARGUMENT,
             "%s: saved by a render of several passes, and this one is drawn at once: say when it ends, by "
@@ -160,7 +160,7 @@ static vplResult replan(Loading* l)
     return vplRenderer_Plan(r, &o, false);
 }
 
-// Makes what the arrays are read into.
+// Makes what the arrays are read into, or draws again what is drawn at once.
 static vplResult openState(vplRenderer* r, uint32_t parts)
 {
     const vplOutputOptions* o = &r->plan->options.output;
@@ -169,6 +169,9 @@ static vplResult openState(vplRenderer* r, uint32_t parts)
         r->runner.run.pass = 0;
         r->runner.run.samples = 0;
         return vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PATHS);
+    }
+    if (parts == VPL_STATE_ONCE) {
+        return vplRenderer_RunPass(r);
     }
     vplImage_Destroy(r->base);
     vplImage_Destroy(r->direct);
@@ -206,6 +209,7 @@ static vplResult loadState(Loading* l)
         r->weight += vplShareOfPass(r->plan, k);
     }
     r->edgeTries = (int)h->tries;
+    r->coarserSquare = h->coarser;
     if (h->edges[0] > 0) { // made again, from the same picture
         TRY(vplRenderer_TraceEdges(r, (int)h->edges[0], (int)h->edges[1]));
     }

@@ -64,7 +64,8 @@ static const char* refuseOptions(const vplPlan* p)
     if (o->output.aovs != 0 && show != VPL_SHOW_PICTURE) {
         return "--aov adds layers to the picture, not to what --show shows instead of it";
     }
-    if (o->path.edgePixels > 0 && (o->stop.passes <= 0 || o->stop.budgetMs > 0)) {
+    const bool once = o->method == VPL_METHOD_RADIOSITY; // its picture is whole at once
+    if (o->path.edgePixels > 0 && ((o->stop.passes <= 0 && !once) || o->stop.budgetMs > 0)) {
         return "edge-pixels needs passes without a budget: they are chosen from the picture of all passes";
     }
     if (o->path.edgePixels > 0 &&

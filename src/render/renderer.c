@@ -32,6 +32,7 @@ static void forget(vplRenderer* r)
     r->weight = r->passMs = r->lastMs = 0;
     r->error = (vplErrorParts){-1, -1, -1};
     r->judgedNoise = 0;
+    r->coarserSquare = 0;
 }
 
 // A plan that may follow the one under way.
@@ -303,7 +304,7 @@ static vplResult addPass(vplRenderer* r)
     return result;
 }
 
-static vplResult runPass(vplRenderer* r)
+vplResult vplRenderer_RunPass(vplRenderer* r)
 {
     vplRun* run = &r->runner.run;
     run->pass = r->done;
@@ -356,7 +357,7 @@ vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
         return review(r, doneOut);
     }
     const vplRunner before = r->runner;
-    const vplResult result = runPass(r);
+    const vplResult result = vplRenderer_RunPass(r);
     if (result == VPL_CANCELLED) { // nothing of the pass counts
         r->runner.stats = before.stats;
         r->runner.loss = before.loss;

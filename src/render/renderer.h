@@ -55,15 +55,17 @@ struct vplRenderer {
     vplEdges* edges;           // pixels that are path-traced; NULL: none
     int edgePixels, edgePaths; // what they were made with, as of vplPathOptions; 0: there are none
     int edgeTries;             // with the passes so far, that left more error than was asked for
-    bool stale;                // results of stages are not those of the last pass
-    double start, cpuStart;    // ms
-    double planStart;          // ms, of the plan under way
-    double planRays;           // of all plans before it
-    double passMs;             // of all its passes
-    double baseMs, lastMs;     // of its last pass: time of direct light, and the rest
-    double deadline;           // ms; infinite: none
-    bool late;                 // the deadline has ended a step
-    double watched;            // ms, when progress was last reported
+    double
+        coarserSquare; // squared error beside edges of the plan before, which had fewer patches; 0: there was none
+    bool stale;        // results of stages are not those of the last pass
+    double start, cpuStart; // ms
+    double planStart;       // ms, of the plan under way
+    double planRays;        // of all plans before it
+    double passMs;          // of all its passes
+    double baseMs, lastMs;  // of its last pass: time of direct light, and the rest
+    double deadline;        // ms; infinite: none
+    bool late;              // the deadline has ended a step
+    double watched;         // ms, when progress was last reported
     double gap; // ms, longest time between two reports: so much later a pass may end that is cancelled
     vplKeptPicture kept;
     bool
@@ -113,6 +115,9 @@ vplResult vplRenderer_OpenSums(vplRenderer* renderer);
 vplResult vplRenderer_TraceEdges(vplRenderer* renderer, int pixels, int paths);
 
 void vplRenderer_ForgetEdges(vplRenderer* renderer);
+
+// Draws the next pass and adds it to the sums, or the whole picture where that is drawn at once. It is not counted yet.
+vplResult vplRenderer_RunPass(vplRenderer* renderer);
 
 // Makes the picture of all passes so far of the plan under way.
 vplResult vplRenderer_Resolve(vplRenderer* renderer, vplImage** imageOut);

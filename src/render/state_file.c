@@ -30,6 +30,7 @@ void vplState_StreamHeader(vplStream* s, vplStateHeader* h)
     vplStream_Word(s, &h->edges[0]);
     vplStream_Word(s, &h->edges[1]);
     vplStream_Long(s, &h->tries);
+    vplStream_Doubles(s, &h->coarser, 1);
 }
 
 size_t vplState_Size(const vplStateHeader* h)
@@ -47,8 +48,18 @@ size_t vplState_Size(const vplStateHeader* h)
 uint32_t vplState_PartsOf(const vplPlan* p)
 {
     const bool paths = p->options.method == VPL_METHOD_PATH;
-    const uint32_t parts = paths ? VPL_STATE_PATHS : p->progressive ? VPL_STATE_PASSES : 0;
-    return parts | (parts != 0 && vplPassesSplitLight(p) ? VPL_STATE_DIRECT : 0);
+    if (!paths && !p->progressive) {
+        return VPL_STATE_ONCE;
+    }
+    return (paths ? VPL_STATE_PATHS : VPL_STATE_PASSES) | (vplPassesSplitLight(p) ? VPL_STATE_DIRECT : 0);
+}
+
+bool vplState_Exists(const vplRenderer* r)
+{
+    const vplRenderOptions* o = &r->asked;
+    const bool goesOn =
+        o->method == VPL_METHOD_AUTO && o->stop.maxError > 0 && o->output.show == VPL_SHOW_PICTURE;
+    return goesOn || vplState_PartsOf(r->plan) != VPL_STATE_ONCE;
 }
 
 void vplState_StreamSums(vplStream* s, vplRenderer* r, uint32_t parts)

@@ -8,10 +8,10 @@
 #include "render/renderer.h"
 #include "render/state_stream.h"
 
-enum { VPL_STATE_VERSION = 3, VPL_STATE_HEADER_BYTES = 144, VPL_STATE_CHECKSUM_BYTES = 8 };
+enum { VPL_STATE_VERSION = 4, VPL_STATE_HEADER_BYTES = 152, VPL_STATE_CHECKSUM_BYTES = 8 };
 
-// Arrays that a file may have.
-enum { VPL_STATE_PASSES = 1, VPL_STATE_PATHS = 2, VPL_STATE_DIRECT = 4 };
+// Arrays that a file may have; VPL_STATE_ONCE: none, the picture is drawn again.
+enum { VPL_STATE_PASSES = 1, VPL_STATE_PATHS = 2, VPL_STATE_DIRECT = 4, VPL_STATE_ONCE = 8 };
 
 // The first 8 letters.
 #define VPL_STATE_MAGIC "VPLSTATE"
@@ -32,6 +32,7 @@ typedef struct vplStateHeader {
     uint64_t side;            // of vplRenderer.turn
     uint32_t edges[2];        // edgePixels and edgePaths of vplRenderer
     uint64_t tries;           // edgeTries of vplRenderer
+    double coarser;           // coarserSquare of vplRenderer
 } vplStateHeader;
 
 // Writes or reads the header, behind the letters.
@@ -40,8 +41,11 @@ void vplState_StreamHeader(vplStream* s, vplStateHeader* header);
 // Bytes of the whole file.
 size_t vplState_Size(const vplStateHeader* header);
 
-// The arrays of a plan's renderer after its first pass; 0: it has no state between passes.
+// The arrays of a plan's renderer after its first pass. VPL_STATE_ONCE: there are none, the picture is drawn at once.
 uint32_t vplState_PartsOf(const vplPlan* plan);
+
+// True if the renderer can be saved: it has passes, or paths, or --method auto may go on from a picture that is drawn at once.
+bool vplState_Exists(const vplRenderer* renderer);
 
 // How many path tracers these arrays are of: one for the picture, and one for its direct light.
 static inline int vplState_CountTracers(uint32_t parts)

@@ -3,6 +3,7 @@
 #include "geometry/bvh.h"
 #include "render/options.h"
 #include "render/planner/look.h"
+#include "render/planner/patch_plan.h"
 #include "render/planner/planner.h"
 
 // The error that a render without goals is made for.
@@ -132,7 +133,7 @@ vplResult vplChooseMethod(vplRunner* r, vplPlan* p)
     p->castsRays = true;
     TRY(vplRunner_RunStage(r, VPL_STAGE_GEOMETRY));
     TRY(vplTakeLook(r, p, &p->look));
-    if (!chooseDirect(r, p, error)) {
+    if (!chooseDirect(r, p, error) && !vplChoosePatches(r, p)) {
         const bool lamps = samplesLamps(r, o);
         if (!lamps) {
             vplDecide(p, "method", "virtual lights with shadows leave the least error in short times");

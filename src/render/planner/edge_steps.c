@@ -24,7 +24,7 @@ static void addPixels(const vplRenderer* r, const vplImage* image, Bin* bins)
         for (int x = 0; x < image->width; x++) {
             Bin* bin = &bins[vplContrastBin(image, x, y)];
             bin->pixels++;
-            for (int c = 0; c < 3; c++, k++) {
+            for (int c = 0; c < 3 && r->sums[0] != NULL; c++, k++) {
                 const double sum = r->sums[0][k];
                 bin->noise += fmax(0, r->sums[1][k] - sum * sum / r->weight) / passes / values;
             }

@@ -2,193 +2,15 @@
 // Second thoughts: the noise and the bias of the picture so far say what more passes, a finer plan and path tracing would
 // cost. Costs are counted in rays and not in seconds, so that the same plan is chosen on every machine.
 #include "base/clock.h"
-#include "render/planner/edge_steps.h"
+#include "render/planner/patch_plan.h"
+#include "render/planner/ways.h"
 
 #include <math.h>
 #include <stdio.h>
 
-// Half of the square of pixels that share lights: the square of the bias falls by half, and noise takes twice as many
-// rays (room, cornell-area, sibenik, hall: 0.5 to 0.8, and 1.7 to 2.4).
-static const double FINER_BIAS = 0.55, FINER_COST = 2.2;
-
 // Passes after which the noise is known well. After fewer it is uncertain, because pixels share lights: where it is
 // estimated too low, the rest of the error looks like bias.
 enum { SURE_PASSES = 5 };
-
-// A render that goes on is judged again when its noise is 0.8 of what it was, after so many rays more.
-static const double LEAST_MORE = 0.56;
-
-// Squares of errors relative to the picture's mean, and rays.
-typedef struct State {
-    double noise, bias; // of the picture so far; a bias that may be chance counts for less
-    double square;      // the whole estimate of the error, at least the noise
-    double spread;      // its standard error
-    double spent;       // rays of its passes, which are in packets
-    double truth;       // rays of the truth
-    double truthPaths;  // through each of its pixels
-    double path;        // rays of a path
-    double paths;       // squared error of a picture by one ray's worth of paths
-    int halvings;       // of the square of pixels that share lights, that are possible
-    bool stuck;         // more paths of the truth do not make its spread smaller
-} State;
-
-// The part of the truth's spread that is noise of its paths, about. Where it is most of it, the spread may grow with the paths
-// until the rare ones that carry much light are among them.
-static double noiseOfTruth(const vplRenderer* r)
-{
-    const double each = 0.5 * vplTruth_Paths(r->truth), count = vplTruth_CountPixels(r->truth);
-    return r->judged.pathVariance / each / sqrt(count);
-}
-
-static State stateOf(const vplRenderer* r)
-{
-    const double noise = r->error.noise > 0 ? r->error.noise : 0, mean = r->judged.mean;
-    const double pixels = (double)r->asked.output.width * r->asked.output.height;
-    const double pathSquare =
-        r->judged.pathVariance / (mean * mean) * r->judged.pathRays * VPL_PATH_RAY * pixels;
-    State s = {.noise = noise * noise,
-               .spent = fmax(1, (double)r->runner.stats.rays - r->planRays),
-               .paths = mean > 0 ? fmax(pathSquare, r->turn.pathSquare) : INFINITY};
-    const bool refines =
-        r->plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && r->asked.pipeline.interleave < 0;
-    for (int side = r->plan->options.pipeline.interleave; refines && side > 2; side /= 2) {
-        s.halvings++;
-    }
-    s.bias = fmax(0, r->error.total * r->error.total - s.noise);
-    s.square = mean > 0 ? fmax(r->judged.square / (mean * mean), s.noise) : 0;
-    s.spread = mean > 0 ? r->judged.spread / (mean * mean) : 0;
-    s.truth = VPL_PATH_RAY * (double)r->judged.rays;
-    s.truthPaths = vplTruth_Paths(r->truth);
-    s.path = VPL_PATH_RAY * r->judged.pathRays;
-    s.stuck = r->judged.spread > 0.85 * r->spreadBefore && r->judged.spread > 3 * noiseOfTruth(r);
-    return s;
-}
-
-// ---- ways to an error
-
-// With fewer paths through a pixel their noise is not known.
-static const double FEWEST_EDGE_PATHS = 32;
-
-// Passes, of this plan or of one whose lights are shared by fewer pixels, then paths through pixels at edges, then paths of the
-// truth that prove the error.
-typedef struct Way {
-    double rays;   // of all
-    int halvings;  // of the square of pixels that share lights
-    double passes; // over those that are done: 1 is no more
-    int pixels, paths;
-} Way;
-
-// Rays of paths of the truth until one and a half standard errors are as small as `margin`.
-static double proofOf(const State* s, double spread, double margin)
-{
-    const double times = 1.5 * spread / margin;
-    return times <= 1 ? 0 : s->stuck ? INFINITY : s->truth * (times - 1);
-}
-
-// The variance of pixels at edges with so many paths each. Twice as many have a third of it, up to as many as the truth has, and
-// half of it beyond; at most as if they were independent. Few pixels have most of it, so that it is often estimated too low; but
-// evenly spread paths gain no more than about 1.5 n^(3/4) where an edge runs through the pixel (room-area, 16 to 128 paths: a
-// fifth to a fortieth of the variance).
-static double varianceOf(const State* s, const vplEdgeStep* step, double paths)
-{
-    const double times = s->truthPaths / paths, alone = step->variance / paths;
-    const double most = alone / (1.5 * sqrt(paths) * sqrt(sqrt(paths)));
-    return fmin(alone, fmax(most, step->mean * times * (times > 1 ? sqrt(times) : 1)));
-}
-
-// Paths through pixels at edges until their variance is half of `left`, because a handful of pixels or rare paths may have most of
-// it (with 0.8 instead, two of five pictures of cornell-spot missed 5 %). Powers of two, and half as many more, are spread most
-// evenly.
-static double pathsFor(const State* s, const vplEdgeStep* step, double left)
-{
-    const double goal = 0.5 * left;
-    double paths = FEWEST_EDGE_PATHS;
-    while (paths < VPL_MAX_SAMPLES && varianceOf(s, step, 1.5 * paths) > goal) {
-        paths *= 2;
-    }
-    return varianceOf(s, step, paths) > goal ? 1.5 * paths : paths;
-}
-
-// The least rays for passes and paths: N / m + V / n is `left`, and a m + c n least, for m times the passes and n paths.
-static Way wayOf(const State* s, const vplEdgeStep* step, int halvings, double square)
-{
-    Way way = {INFINITY, halvings, 0, step->pixels, 0};
-    double bias = step->bias, each = s->spent;
-    for (int k = 0; k < halvings; k++) {
-        bias *= FINER_BIAS;
-        each *= FINER_COST;
-    }
-    const double left = square - bias, cost = step->pixels * s->path;
-    if (!(left > 0)) {
-        return way;
-    }
-    const double one = fmin(step->variance, step->mean * s->truthPaths);
-    const double both = sqrt(each * step->noise) + sqrt(cost * one);
-    way.passes = sqrt(step->noise / each) * both / left;
-    if (halvings == 0) {
-        way.passes = way.passes > 1       ? fmax(way.passes, 1 + LEAST_MORE)
-                     : step->noise < left ? 1
-                                          : 1 + LEAST_MORE;
-    }
-    const double rest = left - step->noise / way.passes;
-    const double paths = step->pixels == 0 ? 0 : rest > 0 ? pathsFor(s, step, rest) : INFINITY;
-    if (paths < VPL_MAX_SAMPLES) {
-        way.paths = (int)paths;
-        way.rays = each * (way.passes - (halvings == 0)) + cost * paths;
-    }
-    return way;
-}
-
-// Tries several shares of the error: the lower it is, the sooner it is proven.
-static Way bestWayOf(const State* s, const vplEdgeStep* step, int halvings, double asked)
-{
-    static const double SHARES[] = {0.9, 0.75, 0.6, 0.45, 0.3};
-    Way best = {.rays = INFINITY};
-    for (int i = 0; i < 5; i++) {
-        const double square = SHARES[i] * asked * asked;
-        Way way = wayOf(s, step, halvings, square);
-        way.rays += proofOf(s, step->spread, asked * asked - square);
-        best = way.rays < best.rays ? way : best;
-    }
-    return best;
-}
-
-enum { MOST_TRIES = 2 };
-
-// Each try that failed leaves a smaller share of the error for the next one.
-static const double SHARE_OF_TRY = 0.7;
-
-// Steps of pixels at edges; none where they may not be traced, or were in vain too often.
-static vplResult findSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut)
-{
-    const vplRenderOptions* o = &r->asked;
-    const bool may = o->method == VPL_METHOD_AUTO && o->output.show == VPL_SHOW_PICTURE &&
-                     o->output.aovs == 0 && o->path.edgePixels == 0;
-    *countOut = 0;
-    return may && r->plan->progressive && r->edges == NULL && r->edgeTries < MOST_TRIES
-               ? vplFindEdgeSteps(r, steps, countOut)
-               : VPL_SUCCESS;
-}
-
-static vplResult findWay(vplRenderer* r, const State* s, double asked, Way* wayOut)
-{
-    const vplEdgeStep none = {0, s->noise, s->bias, s->square, s->spread, 0, 0};
-    vplEdgeStep steps[VPL_EDGE_STEPS];
-    int count = 0;
-    double forEdges = asked;
-    *wayOut = (Way){.rays = INFINITY};
-    TRY(findSteps(r, steps, &count));
-    for (int i = 0; i < r->edgeTries; i++) {
-        forEdges *= SHARE_OF_TRY;
-    }
-    for (int k = 0; k <= s->halvings; k++) {
-        for (int i = -1; i < count; i++) {
-            const Way way = bestWayOf(s, i < 0 ? &none : &steps[i], k, i < 0 ? asked : forEdges);
-            *wayOut = way.rays < wayOut->rays ? way : *wayOut;
-        }
-    }
-    return VPL_SUCCESS;
-}
 
 // ---- the next plan
 
@@ -225,6 +47,30 @@ static vplResult refine(vplRenderer* r, int halvings, bool* doneOut)
     return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }
 
+// More patches, so many times: the same light with less error beside edges, where `rest` of its square is left.
+static vplResult divide(vplRenderer* r, double rest, int times, bool* doneOut)
+{
+    vplRenderOptions o = r->asked;
+    o.method = VPL_METHOD_RADIOSITY;
+    o.lights.shadows = r->plan->options.lights.shadows;
+    o.radiosity.patches = r->plan->options.radiosity.patches;
+    for (int i = 0; i < times; i++) {
+        o.radiosity.patches *= VPL_MORE_PATCHES;
+    }
+    o.output.antialias = r->plan->options.output.antialias;
+    const vplResult result = goOnWith(r, "more patches", &o, doneOut);
+    r->coarserSquare = result == VPL_SUCCESS ? rest : r->coarserSquare;
+    return result;
+}
+
+// Virtual lights instead of patches. --method auto chooses how, without radiosity, which has no clamp.
+static vplResult leavePatches(vplRenderer* r, bool* doneOut)
+{
+    vplRenderOptions o = r->asked;
+    o.lights.compensation = VPL_COMPENSATION_RAYS;
+    return goOnWith(r, "virtual lights", &o, doneOut);
+}
+
 // All light instead of direct light alone.
 static vplResult addLights(vplRenderer* r, bool* doneOut)
 {
@@ -253,6 +99,7 @@ vplResult vplTurnBack(vplRenderer* r, double asked, bool* doneOut)
            r->paths, 100 * r->error.noise, r->turn.side * r->turn.side);
     vplRenderOptions o = r->asked;
     o.pipeline.interleave = r->turn.side;
+    o.lights.compensation = VPL_COMPENSATION_RAYS; // as above, patches are no choice
     r->turn = (vplTurn){0, pathSquare, 0};
     *doneOut = false;
     return vplRenderer_Replace(r, &o, false, r->error.total);
@@ -262,10 +109,10 @@ vplResult vplTurnBack(vplRenderer* r, double asked, bool* doneOut)
 
 // The truth is known well enough for a decision where its standard error is this share of the squared error that was asked for;
 // and more paths of it are not worth it where they would cost more than this share of what is foreseen.
-static const double KNOWN = 0.1, WORTH = 0.1;
+static const double KNOWN = 0.1, WORTH = 0.1, WORTH_OF_PATCHES = 0.3;
 
 // Pixels at edges are traced. More of their paths, or of the truth, may prove that the error is met; else the picture is as before.
-static vplResult proveEdges(vplRenderer* r, const State* s, double asked, bool* moreOut)
+static vplResult proveEdges(vplRenderer* r, const vplErrorState* s, double asked, bool* moreOut)
 {
     const vplEdgeNoise noise = vplEdges_Noise(r->edges, r->asked.output.width * r->asked.output.height);
     const double left = asked * asked - s->square, cost = s->path * r->edgePixels * r->edgePaths;
@@ -274,7 +121,7 @@ static vplResult proveEdges(vplRenderer* r, const State* s, double asked, bool* 
     if (left > 0 && noisy && 2 * cost < s->spent && 2 * r->edgePaths < VPL_MAX_SAMPLES) {
         return vplRenderer_TraceEdges(r, r->edgePixels, 2 * r->edgePaths);
     }
-    if (left > 0 && !noisy && proofOf(s, s->spread, left) < s->spent + cost) {
+    if (left > 0 && !noisy && vplProofOf(s, s->spread, left) < s->spent + cost) {
         return vplRefineTruth(r);
     }
     vplLog(r->runner.run.context, VPL_LOG_INFO,
@@ -285,7 +132,7 @@ static vplResult proveEdges(vplRenderer* r, const State* s, double asked, bool* 
     return VPL_SUCCESS;
 }
 
-static vplResult traceEdges(vplRenderer* r, const Way* way, bool* moreOut)
+static vplResult traceEdges(vplRenderer* r, const vplWay* way, bool* moreOut)
 {
     vplLog(r->runner.run.context, VPL_LOG_INFO,
            "after %d passes the noise is %.3g %% and the error about %.3g %%: traces %d paths through each "
@@ -300,24 +147,24 @@ static const double CHEAP = 0.25;
 
 vplResult vplTryEdges(vplRenderer* r, double asked, bool* moreOut)
 {
-    const State s = stateOf(r);
+    const vplErrorState s = vplErrorState_Of(r);
     vplEdgeStep steps[VPL_EDGE_STEPS];
-    Way best = {.rays = CHEAP * s.spent};
+    vplWay best = {.rays = CHEAP * s.spent};
     int count;
-    TRY(findSteps(r, steps, &count));
+    TRY(vplFindUsefulSteps(r, steps, &count));
     for (int i = 0; i < count; i++) {
         const double left = asked * asked - steps[i].square - 1.5 * steps[i].spread;
-        const double paths = left > 0 ? pathsFor(&s, &steps[i], left) : VPL_MAX_SAMPLES;
+        const double paths = left > 0 ? vplPathsForEdges(&s, &steps[i], left) : VPL_MAX_SAMPLES;
         const double rays = steps[i].pixels * s.path * paths;
         if (paths < VPL_MAX_SAMPLES && rays < best.rays) {
-            best = (Way){rays, 0, 1, steps[i].pixels, (int)paths};
+            best = (vplWay){rays, 0, 1, steps[i].pixels, (int)paths};
         }
     }
     return best.pixels > 0 ? traceEdges(r, &best, moreOut) : VPL_SUCCESS;
 }
 
 // Begins path tracing. Where paths need more rays than foreseen, it turns back to `way`, without the passes that are done.
-static vplResult tracePaths(vplRenderer* r, const State* s, const Way* way, bool* doneOut)
+static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay* way, bool* doneOut)
 {
     const double rays = way->rays + (way->halvings == 0 ? s->spent : 0);
     const int side = r->plan->options.pipeline.interleave >> way->halvings;
@@ -328,16 +175,16 @@ static vplResult tracePaths(vplRenderer* r, const State* s, const Way* way, bool
 }
 
 // The way that needs least for the error.
-static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneOut, bool* moreOut)
+static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, bool* doneOut, bool* moreOut)
 {
-    Way way;
+    vplWay way;
     if (r->plan->progressive && r->done < SURE_PASSES && r->error.total < 2 * asked) {
         return vplTryEdges(r, asked, moreOut);
     }
     if (r->edges != NULL) {
         return proveEdges(r, s, asked, moreOut);
     }
-    TRY(findWay(r, s, asked, &way));
+    TRY(vplFindWay(r, s, asked, &way));
     const double paths = s->paths / (0.9 * asked * asked);
     const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck;
     if (unknown && s->truth < WORTH * fmin(way.rays, paths)) {
@@ -360,14 +207,61 @@ static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneO
     return vplRefineTruth(r);
 }
 
+// The squared error beside edges: what is left if at most a fiftieth of the pixels is traced.
+static vplResult findRest(vplRenderer* r, const vplErrorState* s, double* restOut)
+{
+    const int most = r->asked.output.width * r->asked.output.height / 50;
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    int count;
+    *restOut = s->square;
+    TRY(vplFindUsefulSteps(r, steps, &count));
+    for (int i = 0; i < count && steps[i].pixels <= most; i++) {
+        *restOut = fmin(*restOut, steps[i].square);
+    }
+    return VPL_SUCCESS;
+}
+
+// Radiosity has no passes that add up: pixels at edges are traced, or the patches are made smaller, or virtual lights take over.
+static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double asked, bool* doneOut,
+                                bool* moreOut)
+{
+    vplWay way;
+    double rest;
+    if (r->edges != NULL) {
+        return proveEdges(r, s, asked, moreOut);
+    }
+    TRY(findRest(r, s, &rest));
+    if (r->coarserSquare > 0 && rest > asked * asked &&
+        rest > 0.5 * r->coarserSquare) { // more patches did not help
+        return leavePatches(r, doneOut);
+    }
+    TRY(vplFindWay(r, s, asked, &way));
+    const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck;
+    if (unknown && s->truth < WORTH_OF_PATCHES * way.rays) {
+        *moreOut = true;
+        return vplRefineTruth(r);
+    }
+    if (isinf(way.rays)) {
+        return leavePatches(r, doneOut);
+    }
+    if (way.halvings > 0) {
+        return divide(r, rest, way.halvings, doneOut);
+    }
+    if (way.pixels > 0) {
+        return traceEdges(r, &way, moreOut);
+    }
+    *moreOut = true; // the error is met, but not proven
+    return vplRefineTruth(r);
+}
+
 // The least squared error for the rays that the time is enough for.
-static vplResult spend(vplRenderer* r, const State* s, bool* doneOut)
+static vplResult spend(vplRenderer* r, const vplErrorState* s, bool* doneOut)
 {
     const double rate = s->spent / fmax(1, vplClockMs() - r->planStart),
                  rays = rate * (r->deadline - vplClockMs());
     const double finish = s->bias + s->noise * s->spent / (s->spent + rays);
     const double finer =
-        s->halvings > 0 ? FINER_BIAS * s->bias + FINER_COST * s->noise * s->spent / rays : INFINITY;
+        s->halvings > 0 ? s->finerBias * s->bias + s->finerCost * s->noise * s->spent / rays : INFINITY;
     const double paths = s->paths / rays;
     if (paths < 0.8 * finish && paths < finer) {
         return trace(r, doneOut);
@@ -377,9 +271,12 @@ static vplResult spend(vplRenderer* r, const State* s, bool* doneOut)
 
 vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut, bool* moreOut)
 {
-    const State s = stateOf(r);
+    const vplErrorState s = vplErrorState_Of(r);
     if (r->asked.method == VPL_METHOD_AUTO && r->plan->options.method == VPL_METHOD_DIRECT) {
         return addLights(r, doneOut);
+    }
+    if (r->asked.method == VPL_METHOD_AUTO && r->plan->options.method == VPL_METHOD_RADIOSITY) {
+        return reachByPatches(r, &s, asked, doneOut, moreOut);
     }
     if (r->asked.method == VPL_METHOD_AUTO) {
         return asked > 0 ? reach(r, &s, asked, doneOut, moreOut) : spend(r, &s, doneOut);

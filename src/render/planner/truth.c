@@ -13,6 +13,8 @@
 
 enum {
     MAX_PIXELS = 512,
+    MANY_PIXELS =
+        1024, // of pictures of patches for small errors: they have no noise, and few pixels have most of their error
     FIRST_PATHS = 4,            // of each half
     TRUTH_STREAM = 0x80000009u, // of random numbers
     SEED = 0x7472757468         // differs from that of pictures
@@ -108,11 +110,17 @@ void vplTruth_SetPaths(vplTruth* truth, int each)
     truth->paths.done = each;
 }
 
+static int mostPixels(const vplPlan* p)
+{
+    return p->options.method == VPL_METHOD_RADIOSITY && p->options.stop.maxError < 0.04 ? MANY_PIXELS
+                                                                                        : MAX_PIXELS;
+}
+
 vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, vplTruth** truthOut)
 {
-    const int pixels = picture->width * picture->height;
+    const int pixels = picture->width * picture->height, most = mostPixels(run->plan);
     vplTruth* t;
-    TRY(vplTruth_Open(run, pixels < MAX_PIXELS ? pixels : MAX_PIXELS, &t));
+    TRY(vplTruth_Open(run, pixels < most ? pixels : most, &t));
     const vplRandom4 r = vplRandomAt(t->paths.scene.def.seed, TRUTH_STREAM, 0);
     t->paths.count = choosePixels(t, picture, t->paths.count, (double)vplUnitFloat(r.v[0]));
     const vplResult result =

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "render/planner/ways.h"
+
+#include "render/planner/patch_plan.h"
+
+#include <math.h>
+
+// The part of the truth's spread that is noise of its paths, about. Where it is most of it, the spread may grow with the paths
+// until the rare ones that carry much light are among them.
+static double noiseOfTruth(const vplRenderer* r)
+{
+    const double each = 0.5 * vplTruth_Paths(r->truth), count = vplTruth_CountPixels(r->truth);
+    return r->judged.pathVariance / each / sqrt(count);
+}
+
+// Half of the square of pixels that share lights: the square of the bias falls by half, and noise takes twice as many
+// rays (room, cornell-area, sibenik, hall: 0.5 to 0.8, and 1.7 to 2.4).
+static void countFinerPlans(const vplRenderer* r, vplErrorState* s)
+{
+    const vplRenderOptions* o = &r->plan->options;
+    const bool refines = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && r->asked.pipeline.interleave < 0;
+    s->once = o->method == VPL_METHOD_RADIOSITY;
+    s->finerBias = s->once ? 1.0 / VPL_MORE_PATCHES : 0.55;
+    s->finerCost = s->once ? VPL_MORE_PATCHES_COST : 2.2;
+    if (s->once) {
+        const double most = vplMostPatches(r->runner.run.context);
+        for (int n = o->radiosity.patches; n * VPL_MORE_PATCHES <= most; n *= VPL_MORE_PATCHES) {
+            s->halvings++;
+        }
+        return;
+    }
+    for (int side = o->pipeline.interleave; refines && side > 2; side /= 2) {
+        s->halvings++;
+    }
+}
+
+vplErrorState vplErrorState_Of(const vplRenderer* r)
+{
+    const double noise = r->error.noise > 0 ? r->error.noise : 0, mean = r->judged.mean;
+    const double pixels = (double)r->asked.output.width * r->asked.output.height;
+    const double pathSquare =
+        r->judged.pathVariance / (mean * mean) * r->judged.pathRays * VPL_PATH_RAY * pixels;
+    vplErrorState s = {.noise = noise * noise,
+                       .spent = fmax(1, (double)r->runner.stats.rays - r->planRays),
+                       .paths = mean > 0 ? fmax(pathSquare, r->turn.pathSquare) : INFINITY};
+    countFinerPlans(r, &s);
+    s.bias = fmax(0, r->error.total * r->error.total - s.noise);
+    s.square = mean > 0 ? fmax(r->judged.square / (mean * mean), s.noise) : 0;
+    s.spread = mean > 0 ? r->judged.spread / (mean * mean) : 0;
+    s.truth = VPL_PATH_RAY * (double)r->judged.rays;
+    s.truthPaths = vplTruth_Paths(r->truth);
+    s.path = VPL_PATH_RAY * r->judged.pathRays;
+    s.stuck = r->judged.spread > 0.85 * r->spreadBefore && r->judged.spread > 3 * noiseOfTruth(r);
+    return s;
+}
+
+// ---- ways to an error
+
+// With fewer paths through a pixel their noise is not known.
+static const double FEWEST_EDGE_PATHS = 32;
+
+// Rays of paths of the truth until one and a half standard errors are as small as `margin`.
+double vplProofOf(const vplErrorState* s, double spread, double margin)
+{
+    const double times = 1.5 * spread / margin;
+    return times <= 1 ? 0 : s->stuck ? INFINITY : s->truth * (times - 1);
+}
+
+// The variance of pixels at edges with so many paths each. Twice as many have a third of it, up to as many as the truth has, and
+// half of it beyond; at most as if they were independent. Few pixels have most of it, so that it is often estimated too low; but
+// evenly spread paths gain no more than about 1.5 n^(3/4) where an edge runs through the pixel (room-area, 16 to 128 paths: a
+// fifth to a fortieth of the variance).
+static double varianceOf(const vplErrorState* s, const vplEdgeStep* step, double paths)
+{
+    const double times = s->truthPaths / paths, alone = step->variance / paths;
+    const double most = alone / (1.5 * sqrt(paths) * sqrt(sqrt(paths)));
+    return fmin(alone, fmax(most, step->mean * times * (times > 1 ? sqrt(times) : 1)));
+}
+
+// Paths through pixels at edges until their variance is half of `left`, because a handful of pixels or rare paths may have most of
+// it (with 0.8 instead, two of five pictures of cornell-spot missed 5 %). Powers of two, and half as many more, are spread most
+// evenly.
+double vplPathsForEdges(const vplErrorState* s, const vplEdgeStep* step, double left)
+{
+    const double goal = 0.5 * left;
+    double paths = FEWEST_EDGE_PATHS;
+    while (paths < VPL_MAX_SAMPLES && varianceOf(s, step, 1.5 * paths) > goal) {
+        paths *= 2;
+    }
+    return varianceOf(s, step, paths) > goal ? 1.5 * paths : paths;
+}
+
+// The least rays for passes and paths: N / m + V / n is `left`, and a m + c n least, for m times the passes and n paths.
+static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int halvings, double square)
+{
+    vplWay way = {INFINITY, halvings, 0, step->pixels, 0};
+    double bias = step->bias, each = s->spent;
+    for (int k = 0; k < halvings; k++) {
+        bias *= s->finerBias;
+        each *= s->finerCost;
+    }
+    const double left = square - bias, cost = step->pixels * s->path;
+    if (!(left > 0)) {
+        return way;
+    }
+    const double one = fmin(step->variance, step->mean * s->truthPaths);
+    const double both = sqrt(each * step->noise) + sqrt(cost * one);
+    way.passes = sqrt(step->noise / each) * both / left;
+    if (s->once) {
+        way.passes = 1;
+    } else if (halvings == 0) {
+        way.passes = way.passes > 1       ? fmax(way.passes, 1 + VPL_LEAST_MORE)
+                     : step->noise < left ? 1
+                                          : 1 + VPL_LEAST_MORE;
+    }
+    const double rest = left - step->noise / way.passes;
+    const double paths = step->pixels == 0 ? 0 : rest > 0 ? vplPathsForEdges(s, step, rest) : INFINITY;
+    if (paths < VPL_MAX_SAMPLES) {
+        way.paths = (int)paths;
+        way.rays = each * (way.passes - (halvings == 0)) + cost * paths;
+    }
+    return way;
+}
+
+// Tries several shares of the error: the lower it is, the sooner it is proven.
+static vplWay bestWayOf(const vplErrorState* s, const vplEdgeStep* step, int halvings, double asked)
+{
+    static const double SHARES[] = {0.9, 0.75, 0.6, 0.45, 0.3};
+    vplWay best = {.rays = INFINITY};
+    double spread = step->spread;
+    for (int k = 0; k < halvings && s->once; k++) { // the truth's few pixels differ with the error
+        spread *= s->finerBias;
+    }
+    for (int i = 0; i < 5; i++) {
+        const double square = SHARES[i] * asked * asked;
+        vplWay way = wayOf(s, step, halvings, square);
+        way.rays += vplProofOf(s, spread, asked * asked - square);
+        best = way.rays < best.rays ? way : best;
+    }
+    return best;
+}
+
+// Each try that failed leaves a smaller share of the error for the next one. Beside patches, which have no noise, few pixels more
+// are often enough, and other ways cost far more.
+enum { MOST_TRIES = 2, MOST_TRIES_ONCE = 4 };
+static const double SHARE_OF_TRY = 0.7, SHARE_OF_TRY_ONCE = 0.85;
+
+// Steps of pixels at edges; none where they may not be traced, or were in vain too often.
+vplResult vplFindUsefulSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut)
+{
+    const vplRenderOptions* o = &r->asked;
+    const bool may = o->method == VPL_METHOD_AUTO && o->output.show == VPL_SHOW_PICTURE &&
+                     o->output.aovs == 0 && o->path.edgePixels == 0;
+    *countOut = 0;
+    const bool once = r->plan->options.method == VPL_METHOD_RADIOSITY;
+    return may && (once || r->plan->progressive) && r->edges == NULL &&
+                   r->edgeTries < (once ? MOST_TRIES_ONCE : MOST_TRIES)
+               ? vplFindEdgeSteps(r, steps, countOut)
+               : VPL_SUCCESS;
+}
+
+vplResult vplFindWay(vplRenderer* r, const vplErrorState* s, double asked, vplWay* wayOut)
+{
+    const vplEdgeStep none = {0, s->noise, s->bias, s->square, s->spread, 0, 0};
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    int count = 0;
+    double forEdges = asked;
+    *wayOut = (vplWay){.rays = INFINITY};
+    TRY(vplFindUsefulSteps(r, steps, &count));
+    for (int i = 0; i < r->edgeTries; i++) {
+        forEdges *= s->once ? SHARE_OF_TRY_ONCE : SHARE_OF_TRY;
+    }
+    for (int k = 0; k <= s->halvings; k++) {
+        for (int i = -1; i < count; i++) {
+            const vplWay way = bestWayOf(s, i < 0 ? &none : &steps[i], k, i < 0 ? asked : forEdges);
+            *wayOut = way.rays < wayOut->rays ? way : *wayOut;
+        }
+    }
+    return VPL_SUCCESS;
+}

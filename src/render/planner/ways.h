@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Ways from the picture so far to an error: more passes, lights that fewer pixels share, paths through pixels at edges. Costs are
+// counted in rays and not in seconds, so that the same way is chosen on every machine.
+#ifndef VPL_RENDER_PLANNER_WAYS_H
+#define VPL_RENDER_PLANNER_WAYS_H
+
+#include "render/planner/edge_steps.h"
+
+// A render that goes on is judged again when its noise is 0.8 of what it was, after so many rays more.
+#define VPL_LEAST_MORE 0.56
+
+// What is known of the picture so far: squares of errors relative to the picture's mean, and rays.
+typedef struct vplErrorState {
+    double noise, bias; // a bias that may be chance counts for less
+    double square;      // the whole estimate of the error, at least the noise
+    double spread;      // its standard error
+    double spent;       // rays of its passes, which are in packets
+    double truth;       // rays of the truth
+    double truthPaths;  // through each of its pixels
+    double path;        // rays of a path
+    double paths;       // squared error of a picture by one ray's worth of paths
+    bool once;          // the picture is drawn at once, without noise: radiosity
+    int halvings; // finer plans that are possible: half of the square of pixels that share lights, or more patches
+    double finerBias; // what is left of the squared bias after one of them
+    double finerCost; // rays over those of this plan
+    bool stuck;       // more paths of the truth do not make its spread smaller
+} vplErrorState;
+
+// The truth must have been asked.
+vplErrorState vplErrorState_Of(const vplRenderer* renderer);
+
+// Passes, of this plan or of one whose lights are shared by fewer pixels, then paths through pixels at edges, then paths of the
+// truth that prove the error.
+typedef struct vplWay {
+    double rays;   // of all
+    int halvings;  // as of vplErrorState
+    double passes; // over those that are done: 1 is no more
+    int pixels, paths;
+} vplWay;
+
+// Rays of paths of the truth until one and a half standard errors are as small as `margin`.
+double vplProofOf(const vplErrorState* state, double spread, double margin);
+
+// Paths through pixels at edges until their variance is half of `left`.
+double vplPathsForEdges(const vplErrorState* state, const vplEdgeStep* step, double left);
+
+// The steps that may be traced: none where edges may not be traced, or were in vain too often.
+vplResult vplFindUsefulSteps(vplRenderer* renderer, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut);
+
+// The way that needs least rays; infinitely many: there is none.
+vplResult vplFindWay(vplRenderer* renderer, const vplErrorState* state, double asked, vplWay* wayOut);
+
+#endif

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+// Tests of --method auto where it chooses radiosity for an error: in which scenes, and how it goes on.
+#include "scenes.h"
+
+static vplRenderOptions optionsFor(double error)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.output.width = 200;
+    o.output.height = 120;
+    o.stop.maxError = error;
+    return o;
+}
+
+static vplMethod methodFor(const vplScene* scene, const vplRenderOptions* o)
+{
+    vplPlan* plan;
+    assert_int_equal(vplPlan_Create(scene, o, NULL, &plan), VPL_SUCCESS);
+    const vplMethod method = plan->options.method;
+    vplPlan_Destroy(plan);
+    return method;
+}
+
+TEST(PatchesAreChosenWhereTheyAreLikelyToBeCheaper, 2)
+{
+    static const struct {
+        const char* scene;
+        int width, height;
+        double error;
+        bool patches;
+    } ROWS[] = {
+        {"closed-room", 200, 120, 0.05, true},
+        {"closed-room", 160, 90, 0.05, false}, // a pass of virtual lights is cheap for so few pixels
+        {"closed-room", 160, 90, 0.02, true},
+        {"closed-room", 200, 120, 0, false},
+        {"loft", 200, 120, 0.05, false}, // 492 triangles
+        {"textured-room", 200, 120, 0.05, false},
+        {"crossing-walls", 200, 120, 0.05, false}, // much is near
+        {"door-ajar", 200, 120, 0.05, false},      // 84 triangles, and most lights are behind the door
+    };
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "examples/scenes/%s.json", ROWS[i].scene);
+        vplScene* scene = openScene(context, path);
+        vplRenderOptions o = optionsFor(ROWS[i].error);
+        o.output.width = ROWS[i].width;
+        o.output.height = ROWS[i].height;
+        if ((methodFor(scene, &o) == VPL_METHOD_RADIOSITY) != ROWS[i].patches) {
+            fail_msg("%s at an error of %g", ROWS[i].scene, ROWS[i].error);
+        }
+        vplScene_Destroy(scene);
+    }
+}
+
+// The look at the room would choose patches; what the caller says comes first.
+TEST(PatchesAreNotChosenAgainstTheOptionsOrTheMemory, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    vplRenderOptions o = optionsFor(0.05);
+    assert_int_equal(methodFor(scene, &o), VPL_METHOD_RADIOSITY);
+    o.particles.count = 500;
+    assert_int_equal(methodFor(scene, &o), VPL_METHOD_KELLER);
+    o = optionsFor(0);
+    o.stop.budgetMs = 1000;
+    assert_int_equal(methodFor(scene, &o), VPL_METHOD_KELLER);
+    o = optionsFor(0.01);
+    assert_int_equal(methodFor(scene, &o), VPL_METHOD_RADIOSITY);
+    vplContext_SetMemoryLimit(context,
+                              64 << 20); // form factors of 3,675 patches would be more than a third of it
+    assert_int_equal(methodFor(scene, &o), VPL_METHOD_KELLER);
+    vplScene_Destroy(scene);
+}
+
+// A room whose walls emit has no few points that could stand for them.
+TEST(PatchesAreNotChosenWhereMostSurfacesEmit, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    const vplRenderOptions o = optionsFor(0.05);
+    for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
+        vplMaterialDef m = *vplScene_GetMaterial(scene, i);
+        m.emission = (vplRgb){0.5f, 0.5f, 0.5f};
+        assert_int_equal(vplScene_SetMaterial(scene, i, &m), VPL_SUCCESS);
+    }
+    assert_true(methodFor(scene, &o) != VPL_METHOD_RADIOSITY);
+    vplScene_Destroy(scene);
+}
+
+// Renders to the end. *plansOut: how many plans had a picture; *patchesOut: of the last, 0 without any.
+static vplRenderStats renderPlans(const vplScene* scene, const vplRenderOptions* o, vplImage** imageOut,
+                                  int* plansOut, int* patchesOut)
+{
+    vplRenderer* r;
+    vplRenderStats stats;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    *plansOut = 0;
+    for (bool done = false; !done; ++*plansOut) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderer_GetImage(r, imageOut, &stats), VPL_SUCCESS);
+    const vplRenderOptions* last = &vplRenderer_GetPlan(r)->options;
+    *patchesOut = last->method == VPL_METHOD_RADIOSITY ? last->radiosity.patches : 0;
+    vplRenderer_Destroy(r);
+    return stats;
+}
+
+// Few patches are enough for 5 %, more for 2 %.
+TEST(ThePatchesFollowFromTheError, 2, SLOW)
+{
+    static const double ERRORS[] = {0.05, 0.02};
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    int before = 0;
+    for (int i = 0; i < 2; i++) {
+        const vplRenderOptions o = optionsFor(ERRORS[i]);
+        vplImage* image;
+        int plans, patches;
+        const vplRenderStats stats = renderPlans(scene, &o, &image, &plans, &patches);
+        assert_true(stats.relativeErrorEstimate > 0 && stats.relativeErrorEstimate <= ERRORS[i]);
+        assert_true(patches > before);
+        before = patches;
+        vplImage_Destroy(image);
+    }
+    vplScene_Destroy(scene);
+}
+
+TEST(PatchesLeaveLessThanTheErrorAskedFor, 2, SLOW)
+{
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    vplRenderOptions o = optionsFor(0.02);
+    vplImage* image;
+    int plans, patches;
+    o.output.width = 160;
+    o.output.height = 90;
+    renderPlans(scene, &o, &image, &plans, &patches);
+    assert_true(patches > 0);
+    assert_true(errorAgainstPaths(scene, image) <= 0.02);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+}
+
+static uint64_t hashOf(vplContext* context)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    const vplRenderOptions o = optionsFor(0.05);
+    vplRenderStats stats;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    return stats.imageHash;
+}
+
+TEST_ALONE(PatchesForAnErrorGiveTheSameBitsEverywhere, SLOW)
+{
+    assertSameEverywhere(hashOf);
+}
+
+// The rim of a spot runs through patches. Memory allows no more of them, and layers have no paths at edges: virtual lights follow.
+TEST(VirtualLightsFollowWherePatchesEnd, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    vplRenderOptions o = optionsFor(0.15);
+    vplEmitterDef spot = *vplScene_GetEmitter(scene, 0);
+    vplImage* image;
+    int plans, patches;
+    o.output.aovs = VPL_AOV_DEPTH;
+    spot.type = VPL_EMITTER_SPOT;
+    spot.innerAngle = 0.3;
+    spot.outerAngle = 0.31;
+    assert_int_equal(vplScene_SetEmitter(scene, 0, &spot), VPL_SUCCESS);
+    vplContext_SetMemoryLimit(context, 7 << 20);
+    assert_int_equal(methodFor(scene, &o), VPL_METHOD_RADIOSITY);
+    const vplRenderStats stats = renderPlans(scene, &o, &image, &plans, &patches);
+    vplContext_SetMemoryLimit(context, 0);
+    assert_true(plans > 1 && patches == 0);
+    assert_true(stats.relativeErrorEstimate <= 0.15);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+}
+
+// A render that goes on from patches to more patches, or to virtual lights, is saved and resumed to the same bits.
+TEST(ARenderWithPatchesIsResumedToTheSameBits, 2, SLOW)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    const char* path = temporaryName(".patches");
+    const vplRenderOptions o = optionsFor(0.02);
+    vplImage* image;
+    int plans, patches;
+    const vplRenderStats whole = renderPlans(scene, &o, &image, &plans, &patches);
+    vplImage_Destroy(image);
+    assert_true(plans > 1);
+    for (int steps = 1; steps <= plans; steps++) {
+        vplRenderStats stats;
+        vplRenderer* r;
+        bool done = false;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        for (int i = 0; i < steps; i++) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        assert_int_equal(vplRenderer_Save(r, path), VPL_SUCCESS);
+        vplRenderer_Destroy(r);
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Load(r, path, &done), VPL_SUCCESS);
+        while (!done) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
+        assert_true(stats.imageHash == whole.imageHash);
+        vplImage_Destroy(image);
+        vplRenderer_Destroy(r);
+    }
+    remove(path);
+    vplScene_Destroy(scene);
+}
