@@ -16,7 +16,7 @@ enum {
 };
 
 // The error that FEWEST patches usually leave beside edges; it falls with the root of their number.
-static const double USUAL_ERROR = 0.035;
+static const double USUAL_ERROR = 0.042;
 
 static double patchesFor(double error)
 {
@@ -45,16 +45,13 @@ static bool hasFewEmitters(const vplRunner* r, const vplPlan* p)
 // 25 % of error is left where a door stands ajar, 74 in a dark hall beside it, 14 around a lamp in a box (72, 50 and 75 % reach).
 static const double MOST_REACH = 0.9;
 
-// Patches are quicker in plain scenes only. With more triangles (loft), with textures, or where much is near to each other
-// (crossing-walls: 30 % of the rays from the picture's surfaces are short), 2 % of error takes 1.3, 10 and 2 times the time of virtual
-// lights, which take 2 to 6 times that of patches in room, room-area, cornell-area and cornell-spot.
-static const double MOST_NEAR = 0.25;
-
+// Patches are quicker in plain scenes only: room, room-area, closed-room, cornell-area and cornell-spot. With more triangles (loft)
+// or with textures 2 % of error takes 1.3 and 10 times the time of virtual lights.
 static bool isPlain(const vplRunner* r, const vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     return g->triangleCount <= FEW_TRIANGLES && r->run.scene->textureCount == 0 && p->look.lights > 0 &&
-           p->look.reaching >= MOST_REACH && p->look.nearShare <= MOST_NEAR;
+           p->look.reaching >= MOST_REACH;
 }
 
 // The error that one pass of virtual lights leaves, about; passes grow with the square of a smaller one.
