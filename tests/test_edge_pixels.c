@@ -139,7 +139,7 @@ TEST(AnEvenPictureHasNoEdges, 1)
 TEST(TheErrorHoldsWhereThePlannerTracesEdges, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
-    const vplRenderOptions o = edgeOptions(0, "--method auto --passes 0 --max-error 0.1");
+    const vplRenderOptions o = edgeOptions(0, "--method auto --passes 0 --max-error 0.1 --compensation rays");
     vplRenderStats stats;
     vplImage* image = renderScene(scene, &o, &stats);
     int traced = 0;
@@ -172,7 +172,8 @@ static double raysOf(const vplScene* scene, const vplRenderOptions* o, vplImage*
 TEST(TracedEdgesSpareRays, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
-    vplRenderOptions chosen = edgeOptions(0, "--method auto --passes 0 --max-error 0.03 --seed 2"),
+    vplRenderOptions chosen = edgeOptions(
+                         0, "--method auto --passes 0 --max-error 0.03 --seed 2 --compensation rays"),
                      paths = chosen;
     vplImage *image, *traced;
     paths.method = VPL_METHOD_PATH;
@@ -213,7 +214,8 @@ TEST(TheUnitOfLightDecidesNothing, 2)
     vplImage* images[3];
     for (int i = 0; i < 3; i++) {
         vplScene* scene = openScene(context, "examples/scenes/room-area.json");
-        const vplRenderOptions o = edgeOptions(0, "--method auto --passes 0 --max-error 0.1");
+        const vplRenderOptions o =
+            edgeOptions(0, "--method auto --passes 0 --max-error 0.1 --compensation rays");
         for (int k = 0; k < vplScene_GetMaterialCount(scene); k++) {
             vplMaterialDef material = *vplScene_GetMaterial(scene, k);
             material.emission = (vplRgb){factors[i] * material.emission.r, factors[i] * material.emission.g,
