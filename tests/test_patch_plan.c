@@ -164,7 +164,7 @@ static vplScene* openSpotRoom(vplContext* context)
 }
 
 // Memory allows no more of them, and layers have no paths at edges: virtual lights follow.
-TEST(VirtualLightsFollowWherePatchesEnd, 2)
+TEST(VirtualLightsFollowWherePatchesEnd, 2, SLOW)
 {
     vplScene* scene = openSpotRoom(context);
     vplRenderOptions o = optionsFor(0.1);

@@ -76,6 +76,15 @@ head -c 3000 "$out/state" >"$scratch/cut"
 refuses ResumeOfACutFile 2 "damaged or not complete" "$vpl" $resume "$scratch/cut"
 refuses ResumeOfOtherOptions 2 "saved with --seed 0, but this render has 3" "$vpl" $resume "$out/state" --seed 3
 refuses ResumeOfAnotherScene 2 "another scene" "$vpl" render "$closed" $little --passes 3 --particles 9 --method keller -o "$out/a.pfm" --resume "$out/state"
+# Patches for an error are drawn at once, but the planner may go on from them.
+patches="$closed --size 96x54 --max-error 0.03 --quiet"
+succeeds AStateOfPatches "$vpl" render $patches -o "$out/a.pfm" --checkpoint "$out/patches" --plan-out "$out/plan.json"
+check PatchesAreChosen grep -q '"method": "radiosity"' "$out/plan.json"
+succeeds PatchesAreResumed "$vpl" render $patches -o "$out/b.pfm" --resume "$out/patches"
+check ResumedPatchesAreTheSame cmp "$out/a.pfm" "$out/b.pfm"
+succeeds APlanOfPatchesIsReplayed "$vpl" render "$closed" --plan "$out/plan.json" --isa scalar -o "$out/c.pfm" --quiet
+check ReplayedPatchesAreTheSame cmp "$out/a.pfm" "$out/c.pfm"
+rm "$out/patches" "$out/plan.json" "$out"/[abc].pfm
 for option in checkpoint resume; do
     refuses "NoStateOfOnePass_$option" 2 "--$option: this picture is drawn at once" "$vpl" render "$room" $little --method direct -o "$out/a.pfm" "--$option" "$out/state"
     refuses "NoStateOfFrames_$option" 2 "--$option is for one picture, not for --frames" "$vpl" render "$room" $little -o "$out/a.pfm" "--$option" "$out/state" --frames 1:2
