@@ -69,14 +69,11 @@ static void chooseLights(vplPlan* p, double error)
     }
 }
 
-// The largest share of all surfaces that area lights may be for 64 points to stand for them.
-static const double MOST_LAMPS = 0.1;
-
 // True if surfaces emit, but few of them, and nothing comes from outside.
 static bool hasLamps(const vplRunner* r)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    return g->emittingArea > 0 && g->emittingArea < MOST_LAMPS * g->area &&
+    return g->emittingArea > 0 && g->emittingArea < VPL_MOST_LAMPS * g->area &&
            vplScene_GetEnvironment(r->run.scene)->type == VPL_ENVIRONMENT_NONE;
 }
 

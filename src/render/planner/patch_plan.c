@@ -30,14 +30,11 @@ double vplMostPatches(const vplContext* context)
     return sqrt((limit > 0 && limit < most ? limit : most) / (3 * sizeof(float)));
 }
 
-// The largest share of all surfaces that area lights may be for their points to stand for them.
-static const double MOST_LAMPS = 0.1;
-
 // True if light comes from a few small emitters.
 static bool hasFewEmitters(const vplRunner* r, const vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    return p->emitterCount <= FEW_EMITTERS && g->emittingArea < MOST_LAMPS * g->area &&
+    return p->emitterCount <= FEW_EMITTERS && g->emittingArea < VPL_MOST_LAMPS * g->area &&
            vplScene_GetEnvironment(r->run.scene)->type == VPL_ENVIRONMENT_NONE;
 }
 
