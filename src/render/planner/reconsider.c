@@ -32,7 +32,7 @@ static vplResult trace(vplRenderer* r, bool* doneOut)
     return goOnWith(r, "path tracing", &o, doneOut);
 }
 
-static vplResult refine(vplRenderer* r, int halvings, bool* doneOut)
+static vplResult refine(vplRenderer* r, int finer, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
     const vplRenderOptions* before = &r->plan->options;
@@ -43,7 +43,7 @@ static vplResult refine(vplRenderer* r, int halvings, bool* doneOut)
     o.pipeline.kind = before->pipeline.kind;
     o.output.antialias =
         before->output.antialias < 16 && o.output.antialias == 8 ? 16 : before->output.antialias;
-    o.pipeline.interleave = before->pipeline.interleave >> halvings;
+    o.pipeline.interleave = before->pipeline.interleave >> finer;
     return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }
 
@@ -166,8 +166,8 @@ vplResult vplTryEdges(vplRenderer* r, double asked, bool* moreOut)
 // Begins path tracing. Where paths need more rays than foreseen, it turns back to `way`, without the passes that are done.
 static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay* way, bool* doneOut)
 {
-    const double rays = way->rays + (way->halvings == 0 ? s->spent : 0);
-    const int side = r->plan->options.pipeline.interleave >> way->halvings;
+    const double rays = way->rays + (way->finer == 0 ? s->spent : 0);
+    const int side = r->plan->options.pipeline.interleave >> way->finer;
     const bool turns = isfinite(rays) && r->plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED;
     TRY(trace(r, doneOut));
     r->turn = (vplTurn){turns ? rays : 0, s->paths, turns ? side : 0};
@@ -194,8 +194,8 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     if (paths < way.rays) {
         return tracePaths(r, s, &way, doneOut);
     }
-    if (way.halvings > 0) {
-        return refine(r, way.halvings, doneOut);
+    if (way.finer > 0) {
+        return refine(r, way.finer, doneOut);
     }
     if (way.passes > 1 || isinf(way.rays)) {
         return VPL_SUCCESS;
@@ -244,8 +244,8 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
     if (isinf(way.rays)) {
         return leavePatches(r, doneOut);
     }
-    if (way.halvings > 0) {
-        return divide(r, rest, way.halvings, doneOut);
+    if (way.finer > 0) {
+        return divide(r, rest, way.finer, doneOut);
     }
     if (way.pixels > 0) {
         return traceEdges(r, &way, moreOut);
@@ -261,7 +261,7 @@ static vplResult spend(vplRenderer* r, const vplErrorState* s, bool* doneOut)
                  rays = rate * (r->deadline - vplClockMs());
     const double finish = s->bias + s->noise * s->spent / (s->spent + rays);
     const double finer =
-        s->halvings > 0 ? s->finerBias * s->bias + s->finerCost * s->noise * s->spent / rays : INFINITY;
+        s->finer > 0 ? s->finerBias * s->bias + s->finerCost * s->noise * s->spent / rays : INFINITY;
     const double paths = s->paths / rays;
     if (paths < 0.8 * finish && paths < finer) {
         return trace(r, doneOut);

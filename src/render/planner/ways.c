@@ -25,12 +25,12 @@ static void countFinerPlans(const vplRenderer* r, vplErrorState* s)
     if (s->once) {
         const double most = vplMostPatches(r->runner.run.context);
         for (int n = o->radiosity.patches; n * VPL_MORE_PATCHES <= most; n *= VPL_MORE_PATCHES) {
-            s->halvings++;
+            s->finer++;
         }
         return;
     }
     for (int side = o->pipeline.interleave; refines && side > 2; side /= 2) {
-        s->halvings++;
+        s->finer++;
     }
 }
 
@@ -91,11 +91,11 @@ double vplPathsForEdges(const vplErrorState* s, const vplEdgeStep* step, double 
 }
 
 // The least rays for passes and paths: N / m + V / n is `left`, and a m + c n least, for m times the passes and n paths.
-static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int halvings, double square)
+static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int finer, double square)
 {
-    vplWay way = {INFINITY, halvings, 0, step->pixels, 0};
+    vplWay way = {INFINITY, finer, 0, step->pixels, 0};
     double bias = step->bias, each = s->spent;
-    for (int k = 0; k < halvings; k++) {
+    for (int k = 0; k < finer; k++) {
         bias *= s->finerBias;
         each *= s->finerCost;
     }
@@ -108,7 +108,7 @@ static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int halving
     way.passes = sqrt(step->noise / each) * both / left;
     if (s->once) {
         way.passes = 1;
-    } else if (halvings == 0) {
+    } else if (finer == 0) {
         way.passes = way.passes > 1       ? fmax(way.passes, 1 + VPL_LEAST_MORE)
                      : step->noise < left ? 1
                                           : 1 + VPL_LEAST_MORE;
@@ -117,23 +117,23 @@ static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int halving
     const double paths = step->pixels == 0 ? 0 : rest > 0 ? vplPathsForEdges(s, step, rest) : INFINITY;
     if (paths < VPL_MAX_SAMPLES) {
         way.paths = (int)paths;
-        way.rays = each * (way.passes - (halvings == 0)) + cost * paths;
+        way.rays = each * (way.passes - (finer == 0)) + cost * paths;
     }
     return way;
 }
 
 // Tries several shares of the error: the lower it is, the sooner it is proven.
-static vplWay bestWayOf(const vplErrorState* s, const vplEdgeStep* step, int halvings, double asked)
+static vplWay bestWayOf(const vplErrorState* s, const vplEdgeStep* step, int finer, double asked)
 {
     static const double SHARES[] = {0.9, 0.75, 0.6, 0.45, 0.3};
     vplWay best = {.rays = INFINITY};
     double spread = step->spread;
-    for (int k = 0; k < halvings && s->once; k++) { // the truth's few pixels differ with the error
+    for (int k = 0; k < finer && s->once; k++) { // the truth's few pixels differ with the error
         spread *= s->finerBias;
     }
     for (int i = 0; i < 5; i++) {
         const double square = SHARES[i] * asked * asked;
-        vplWay way = wayOf(s, step, halvings, square);
+        vplWay way = wayOf(s, step, finer, square);
         way.rays += vplProofOf(s, spread, asked * asked - square);
         best = way.rays < best.rays ? way : best;
     }
@@ -170,7 +170,7 @@ vplResult vplFindWay(vplRenderer* r, const vplErrorState* s, double asked, vplWa
     for (int i = 0; i < r->edgeTries; i++) {
         forEdges *= s->once ? SHARE_OF_TRY_ONCE : SHARE_OF_TRY;
     }
-    for (int k = 0; k <= s->halvings; k++) {
+    for (int k = 0; k <= s->finer; k++) {
         for (int i = -1; i < count; i++) {
             const vplWay way = bestWayOf(s, i < 0 ? &none : &steps[i], k, i < 0 ? asked : forEdges);
             *wayOut = way.rays < wayOut->rays ? way : *wayOut;

@@ -20,7 +20,7 @@ typedef struct vplErrorState {
     double path;        // rays of a path
     double paths;       // squared error of a picture by one ray's worth of paths
     bool once;          // the picture is drawn at once, without noise: radiosity
-    int halvings; // finer plans that are possible: half of the square of pixels that share lights, or more patches
+    int finer; // how often the plan can be made finer: half of the square of pixels that share lights, or more patches
     double finerBias; // what is left of the squared bias after one of them
     double finerCost; // rays over those of this plan
     bool stuck;       // more paths of the truth do not make its spread smaller
@@ -29,11 +29,11 @@ typedef struct vplErrorState {
 // The truth must have been asked.
 vplErrorState vplErrorState_Of(const vplRenderer* renderer);
 
-// Passes, of this plan or of one whose lights are shared by fewer pixels, then paths through pixels at edges, then paths of the
+// Passes, of this plan or of a finer one, then paths through pixels at edges, then paths of the
 // truth that prove the error.
 typedef struct vplWay {
     double rays;   // of all
-    int halvings;  // as of vplErrorState
+    int finer;     // how often the plan is made finer for it
     double passes; // over those that are done: 1 is no more
     int pixels, paths;
 } vplWay;
