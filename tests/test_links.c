@@ -343,8 +343,9 @@ TEST(NoSideTakesLightFromAnother, 2)
         b[from].r = 1;
         vplRgb* e = gather(&room, NULL, b);
         for (int i = 0; i < room.sides->count; i++) {
-            least = fmin(least, (double)e[i].r);
-            most = fmax(most, (double)e[i].r);
+            const double r = (double)e[i].r; // fmin and fmax here crash gcc 12 for aarch64
+            least = r < least ? r : least;
+            most = r > most ? r : most;
         }
         b[from].r = 0;
         free(e);
