@@ -183,6 +183,16 @@ static vplShadow makeShadow(const vplCubeMap* map, int variant)
     return shadow;
 }
 
+static void compareRandomBlocks(vplCubeMap* map, int count, int64_t told[2])
+{
+    for (int i = 0; i < count; i++) {
+        vplSurface surface;
+        vplShadow shadow = makeShadow(map, i);
+        randomBlock(map, (uint64_t)i, &surface);
+        compareShadows(&shadow, &surface, told);
+    }
+}
+
 TEST_ALONE(BoundsNeverChangeAShadowOfRandomMaps, SLOW)
 {
     const int sizes[] = {1, 40, 128, 300, 1024};
@@ -191,12 +201,7 @@ TEST_ALONE(BoundsNeverChangeAShadowOfRandomMaps, SLOW)
         int64_t told[2] = {0, 0};
         for (int k = 0; k < 5 && context != NULL; k++) {
             vplCubeMap* map = makeRandomMap(context, sizes[k], FAR, (uint64_t)(1000 + 10 * k));
-            for (int i = 0; i < 2000; i++) {
-                vplSurface surface;
-                vplShadow shadow = makeShadow(map, i);
-                randomBlock(map, (uint64_t)i, &surface);
-                compareShadows(&shadow, &surface, told);
-            }
+            compareRandomBlocks(map, 2000, told);
             vplCubeMap_Destroy(map);
         }
         if (context != NULL) {
@@ -211,12 +216,7 @@ TEST(BoundsNeverChangeAShadowOfASmallScene, 1)
 {
     int64_t told[2] = {0, 0};
     vplCubeMap* map = makeRandomMap(context, 128, NEAR, 3000);
-    for (int i = 0; i < 4000; i++) {
-        vplSurface surface;
-        vplShadow shadow = makeShadow(map, i);
-        randomBlock(map, (uint64_t)i, &surface);
-        compareShadows(&shadow, &surface, told);
-    }
+    compareRandomBlocks(map, 4000, told);
     vplCubeMap_Destroy(map);
     assert_true(told[0] > 4000 && told[1] > 1000);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What two nodes exchange at most, by their bounds.
+// Bounds the form factor of two nodes by their bounding volumes and cones of normals.
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/links/link_pair.h"

@@ -122,7 +122,7 @@ static bool isNear(const vplJudgedPair* pair)
     return vplLength(vplSub(pair->q->centre, pair->p->centre)) < NEAR * larger;
 }
 
-// How far a function with this slope falls from the middle of a node to any of its sides.
+// The largest decrease of a linear function with this slope between the centre of a node and its sides.
 static double fallOver(const vplLinkNode* node, const double slope[3])
 {
     double fall = 0;

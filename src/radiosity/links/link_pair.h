@@ -44,17 +44,14 @@ double vplFactorBound(const vplJudgedPair* pair);
 // shadows have the same sign over many links. Without, a dark room behind a door ajar errs 2.3 times as much.
 #define VPL_LINK_SHADOWED 0.5
 
-// A link is blocked in part if rays let through less than this fraction.
-static const double OPEN = 0.98;
-
-// A link is blocked in part if rays let through less than this fraction.
+// A link counts as partly blocked if less than this fraction of its light passes.
 #define VPL_LINK_OPEN 0.98
 
 // Casts rays number `from` to `to` - 1.
 void vplCastPairRays(const vplJudgedPair* pair, const vplLinkTerms* terms, int from, int to,
                      vplLinkSeen* seen);
 
-// What was found between two groups.
+// What stands between two groups, as far as rays and the shaft tell.
 typedef enum vplLinkView {
     VPL_VIEW_CLEAR,   // nothing
     VPL_VIEW_HIDDEN,  // something everywhere

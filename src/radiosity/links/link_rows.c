@@ -81,8 +81,8 @@ static vplResult findEnclosed(EnclosedTest* t, vplArena* scratch, int64_t* rays)
 
 // ---- scales
 
-// No scale is larger: a side whose links sum to next to nothing, where rays say that they should not, keeps what it
-// has. Without, the rounding of such a sum was blown up, and light in Sibenik grew without bound.
+// The largest scale of a row. The links of a side may cancel to a sum that is only rounding, although rays say that the side
+// receives light; scaling such a row to that light made radiosity in Sibenik diverge.
 static const double MOST_SCALE = 1024;
 
 // One round: moves the sum of each row half of the way to 1; sides that are not enclosed only move if above

@@ -9,13 +9,13 @@
 
 #include <math.h>
 
-// A pair of groups of which all rays are blocked counts as hidden after so many, for each time that its unoccluded
-// form factor is the allowed error.
+// Two groups count as hidden from each other if HIDING_RAYS n rays are all blocked, where n is their unoccluded form factor
+// divided by the allowed error.
 static const double HIDING_RAYS = 16;
 
-// The same where rows are scaled to what rays find, and so are not darker for what the test misses: fewer, or two for
-// each pair of sides, of which each would cast four. Elsewhere, a room that is lit through a door ajar would lose a
-// twentieth of its light.
+// Fewer rays are enough where each row is scaled to the share of light that rays measured, which restores what this test
+// misses; at most two rays per pair of sides, because the sides by themselves would cast four. Without that scaling, so few
+// rays cost a room that is lit through a door ajar a twentieth of its light.
 static const double FEWER_HIDING_RAYS = 4, HIDING_RAYS_OF_SIDES = 2;
 
 // The first rays of a pair of groups: one packet.

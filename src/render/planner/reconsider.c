@@ -47,27 +47,34 @@ static vplResult refine(vplRenderer* r, int finer, bool* doneOut)
     return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }
 
-// More patches, so many times: the same light with less error beside edges, where `rest` of its square is left.
-static vplResult divide(vplRenderer* r, double rest, int times, bool* doneOut)
+// Multiplies the patches by VPL_MORE_PATCHES, as often as the way says, and keeps the error that the way begins with.
+static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
     o.method = VPL_METHOD_RADIOSITY;
     o.lights.shadows = r->plan->options.lights.shadows;
     o.radiosity.patches = r->plan->options.radiosity.patches;
-    for (int i = 0; i < times; i++) {
+    for (int i = 0; i < way->finer; i++) {
         o.radiosity.patches *= VPL_MORE_PATCHES;
     }
     o.output.antialias = r->plan->options.output.antialias;
     const vplResult result = goOnWith(r, "more patches", &o, doneOut);
-    r->coarserSquare = result == VPL_SUCCESS ? rest : r->coarserSquare;
+    r->coarserSquare = result == VPL_SUCCESS ? way->rest : r->coarserSquare;
     return result;
 }
 
-// Virtual lights instead of patches. --method auto chooses how, without radiosity, which has no clamp.
-static vplResult leavePatches(vplRenderer* r, bool* doneOut)
+// What was asked for, as far as virtual lights do it: --method auto does not choose radiosity where the clamp is compensated, which
+// it would decide for virtual lights anyway.
+static vplRenderOptions askedOfLights(const vplRenderer* r)
 {
     vplRenderOptions o = r->asked;
     o.lights.compensation = VPL_COMPENSATION_RAYS;
+    return o;
+}
+
+static vplResult leavePatches(vplRenderer* r, bool* doneOut)
+{
+    const vplRenderOptions o = askedOfLights(r);
     return goOnWith(r, "virtual lights", &o, doneOut);
 }
 
@@ -97,9 +104,8 @@ vplResult vplTurnBack(vplRenderer* r, double asked, bool* doneOut)
            "after %d paths per pixel the noise is %.3g %%, more than foreseen: goes back to virtual lights "
            "that %d pixels share",
            r->paths, 100 * r->error.noise, r->turn.side * r->turn.side);
-    vplRenderOptions o = r->asked;
+    vplRenderOptions o = askedOfLights(r);
     o.pipeline.interleave = r->turn.side;
-    o.lights.compensation = VPL_COMPENSATION_RAYS; // as above, patches are no choice
     r->turn = (vplTurn){0, pathSquare, 0};
     *doneOut = false;
     return vplRenderer_Replace(r, &o, false, r->error.total);
@@ -142,6 +148,16 @@ static vplResult traceEdges(vplRenderer* r, const vplWay* way, bool* moreOut)
     return vplRenderer_TraceEdges(r, way->pixels, way->paths);
 }
 
+// Ends a way that needs no more passes: by edges, or where none are left, by paths of the truth, which prove that the error is met.
+static vplResult endBy(vplRenderer* r, const vplWay* way, bool* moreOut)
+{
+    if (way->pixels > 0) {
+        return traceEdges(r, way, moreOut);
+    }
+    *moreOut = true;
+    return vplRefineTruth(r);
+}
+
 // Edges that cost less than this share of the passes are traced before the noise is known well.
 static const double CHEAP = 0.25;
 
@@ -157,7 +173,7 @@ vplResult vplTryEdges(vplRenderer* r, double asked, bool* moreOut)
         const double paths = left > 0 ? vplPathsForEdges(&s, &steps[i], left) : VPL_MAX_SAMPLES;
         const double rays = steps[i].pixels * s.path * paths;
         if (paths < VPL_MAX_SAMPLES && rays < best.rays) {
-            best = (vplWay){rays, 0, 1, steps[i].pixels, (int)paths};
+            best = (vplWay){rays, 0, 1, steps[i].pixels, (int)paths, 0};
         }
     }
     return best.pixels > 0 ? traceEdges(r, &best, moreOut) : VPL_SUCCESS;
@@ -200,25 +216,7 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     if (way.passes > 1 || isinf(way.rays)) {
         return VPL_SUCCESS;
     }
-    if (way.pixels > 0) {
-        return traceEdges(r, &way, moreOut);
-    }
-    *moreOut = true; // the error is met, but not proven
-    return vplRefineTruth(r);
-}
-
-// The squared error beside edges: what is left if at most a fiftieth of the pixels is traced.
-static vplResult findRest(vplRenderer* r, const vplErrorState* s, double* restOut)
-{
-    const int most = r->asked.output.width * r->asked.output.height / 50;
-    vplEdgeStep steps[VPL_EDGE_STEPS];
-    int count;
-    *restOut = s->square;
-    TRY(vplFindUsefulSteps(r, steps, &count));
-    for (int i = 0; i < count && steps[i].pixels <= most; i++) {
-        *restOut = fmin(*restOut, steps[i].square);
-    }
-    return VPL_SUCCESS;
+    return endBy(r, &way, moreOut);
 }
 
 // Radiosity has no passes that add up: pixels at edges are traced, or the patches are made smaller, or virtual lights take over.
@@ -226,16 +224,13 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
                                 bool* moreOut)
 {
     vplWay way;
-    double rest;
     if (r->edges != NULL) {
         return proveEdges(r, s, asked, moreOut);
     }
-    TRY(findRest(r, s, &rest));
-    if (r->coarserSquare > 0 && rest > asked * asked &&
-        rest > 0.5 * r->coarserSquare) { // more patches did not help
-        return leavePatches(r, doneOut);
-    }
     TRY(vplFindWay(r, s, asked, &way));
+    if (r->coarserSquare > 0 && way.rest > asked * asked && way.rest > 0.5 * r->coarserSquare) {
+        return leavePatches(r, doneOut); // more patches did not help
+    }
     const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck;
     if (unknown && s->truth < WORTH_OF_PATCHES * way.rays) {
         *moreOut = true;
@@ -245,13 +240,9 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
         return leavePatches(r, doneOut);
     }
     if (way.finer > 0) {
-        return divide(r, rest, way.finer, doneOut);
+        return divide(r, &way, doneOut);
     }
-    if (way.pixels > 0) {
-        return traceEdges(r, &way, moreOut);
-    }
-    *moreOut = true; // the error is met, but not proven
-    return vplRefineTruth(r);
+    return endBy(r, &way, moreOut);
 }
 
 // The least squared error for the rays that the time is enough for.

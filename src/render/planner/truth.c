@@ -13,8 +13,7 @@
 
 enum {
     MAX_PIXELS = 512,
-    MANY_PIXELS =
-        1024, // of pictures of patches for small errors: they have no noise, and few pixels have most of their error
+    MANY_PIXELS = 1024,         // of a picture by patches for a small error
     FIRST_PATHS = 4,            // of each half
     TRUTH_STREAM = 0x80000009u, // of random numbers
     SEED = 0x7472757468         // differs from that of pictures
@@ -110,6 +109,7 @@ void vplTruth_SetPaths(vplTruth* truth, int each)
     truth->paths.done = each;
 }
 
+// Patches have no noise, and few pixels have most of their error: below 4 % more pixels are compared.
 static int mostPixels(const vplPlan* p)
 {
     return p->options.method == VPL_METHOD_RADIOSITY && p->options.stop.maxError < 0.04 ? MANY_PIXELS

@@ -91,15 +91,11 @@ double vplPathsForEdges(const vplErrorState* s, const vplEdgeStep* step, double 
 }
 
 // The least rays for passes and paths: N / m + V / n is `left`, and a m + c n least, for m times the passes and n paths.
-static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int finer, double square)
+// `each` is the rays of one time the passes.
+static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int finer, double each, double square)
 {
-    vplWay way = {INFINITY, finer, 0, step->pixels, 0};
-    double bias = step->bias, each = s->spent;
-    for (int k = 0; k < finer; k++) {
-        bias *= s->finerBias;
-        each *= s->finerCost;
-    }
-    const double left = square - bias, cost = step->pixels * s->path;
+    vplWay way = {INFINITY, finer, 0, step->pixels, 0, 0};
+    const double left = square - step->bias, cost = step->pixels * s->path;
     if (!(left > 0)) {
         return way;
     }
@@ -122,26 +118,30 @@ static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int finer, 
     return way;
 }
 
-// Tries several shares of the error: the lower it is, the sooner it is proven.
+// The cheapest way for a step after so many finer plans. It may use a share of the error that was asked for: a smaller share costs
+// more passes and paths, but fewer paths of the truth to prove it.
 static vplWay bestWayOf(const vplErrorState* s, const vplEdgeStep* step, int finer, double asked)
 {
     static const double SHARES[] = {0.9, 0.75, 0.6, 0.45, 0.3};
     vplWay best = {.rays = INFINITY};
-    double spread = step->spread;
-    for (int k = 0; k < finer && s->once; k++) { // the truth's few pixels differ with the error
-        spread *= s->finerBias;
+    vplEdgeStep then = *step;
+    double each = s->spent;
+    for (int k = 0; k < finer; k++) {
+        each *= s->finerCost;
+        then.bias *= s->finerBias;
+        then.spread *= s->once ? s->finerBias : 1; // without noise the spread is that of the bias
     }
     for (int i = 0; i < 5; i++) {
         const double square = SHARES[i] * asked * asked;
-        vplWay way = wayOf(s, step, finer, square);
-        way.rays += vplProofOf(s, spread, asked * asked - square);
+        vplWay way = wayOf(s, &then, finer, each, square);
+        way.rays += vplProofOf(s, then.spread, asked * asked - square);
         best = way.rays < best.rays ? way : best;
     }
     return best;
 }
 
-// Each try that failed leaves a smaller share of the error for the next one. Beside patches, which have no noise, few pixels more
-// are often enough, and other ways cost far more.
+// Edges are traced at most so often, and each try may use only this share of the error of the try before. Patches get more and
+// closer tries: they have no noise, so that a few more pixels are often enough, and other ways cost far more.
 enum { MOST_TRIES = 2, MOST_TRIES_ONCE = 4 };
 static const double SHARE_OF_TRY = 0.7, SHARE_OF_TRY_ONCE = 0.85;
 
@@ -157,6 +157,17 @@ vplResult vplFindUsefulSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], 
                    r->edgeTries < (once ? MOST_TRIES_ONCE : MOST_TRIES)
                ? vplFindEdgeSteps(r, steps, countOut)
                : VPL_SUCCESS;
+}
+
+// The squared error beside edges: what is left if at most a fiftieth of the picture's pixels is traced.
+static double restOf(const vplRenderer* r, const vplErrorState* s, const vplEdgeStep* steps, int count)
+{
+    const int most = r->asked.output.width * r->asked.output.height / 50;
+    double rest = s->square;
+    for (int i = 0; i < count && steps[i].pixels <= most; i++) {
+        rest = fmin(rest, steps[i].square);
+    }
+    return rest;
 }
 
 vplResult vplFindWay(vplRenderer* r, const vplErrorState* s, double asked, vplWay* wayOut)
@@ -176,5 +187,6 @@ vplResult vplFindWay(vplRenderer* r, const vplErrorState* s, double asked, vplWa
             *wayOut = way.rays < wayOut->rays ? way : *wayOut;
         }
     }
+    wayOut->rest = restOf(r, s, steps, count);
     return VPL_SUCCESS;
 }

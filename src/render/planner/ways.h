@@ -9,7 +9,7 @@
 // A render that goes on is judged again when its noise is 0.8 of what it was, after so many rays more.
 #define VPL_LEAST_MORE 0.56
 
-// What is known of the picture so far: squares of errors relative to the picture's mean, and rays.
+// The error of the picture so far, and its cost. Errors are squared and relative to the picture's mean, costs are counts of rays.
 typedef struct vplErrorState {
     double noise, bias; // a bias that may be chance counts for less
     double square;      // the whole estimate of the error, at least the noise
@@ -36,6 +36,7 @@ typedef struct vplWay {
     int finer;     // how often the plan is made finer for it
     double passes; // over those that are done: 1 is no more
     int pixels, paths;
+    double rest; // the squared error of the picture so far beside its edges
 } vplWay;
 
 // Rays of paths of the truth until one and a half standard errors are as small as `margin`.
