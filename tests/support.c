@@ -270,6 +270,42 @@ vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vp
     return image;
 }
 
+int stepToEnd(vplRenderer* r)
+{
+    int steps = 0;
+    for (bool done = false; !done; steps++) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    return steps;
+}
+
+void saveAfter(const vplScene* scene, const vplRenderOptions* o, int steps, const char* path, bool* endedOut)
+{
+    vplRenderer* r;
+    *endedOut = false;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    for (int i = 0; i < steps && !*endedOut; i++) {
+        assert_int_equal(vplRenderer_Step(r, endedOut), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderer_Save(r, path), VPL_SUCCESS);
+    vplRenderer_Destroy(r);
+}
+
+void finishSaved(const vplScene* scene, const vplRenderOptions* o, const char* path, vplRenderStats* stats)
+{
+    vplRenderer* r;
+    vplImage* image;
+    bool done;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Load(r, path, &done), VPL_SUCCESS);
+    while (!done) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderer_GetImage(r, &image, stats), VPL_SUCCESS);
+    vplImage_Destroy(image);
+    vplRenderer_Destroy(r);
+}
+
 double errorAgainstPaths(const vplScene* scene, const vplImage* image)
 {
     vplImage* halves[2];

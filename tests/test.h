@@ -110,6 +110,17 @@ vplScene* openScene(vplContext* context, const char* path);
 // Calls vplRender; a failure fails the test with the library's message. statsOut may be NULL.
 vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut);
 
+// Steps until the render is done; returns the number of steps.
+int stepToEnd(vplRenderer* renderer);
+
+// Saves a render after so many steps, or as many as it has.
+void saveAfter(const vplScene* scene, const vplRenderOptions* options, int steps, const char* path,
+               bool* endedOut);
+
+// Loads a saved render and steps until it is done.
+void finishSaved(const vplScene* scene, const vplRenderOptions* options, const char* path,
+                 vplRenderStats* statsOut);
+
 // Names a file with this ending in /tmp that no other process uses: several builds are tested side by side. The
 // next call overwrites it.
 const char* temporaryName(const char* ending);

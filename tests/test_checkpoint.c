@@ -86,9 +86,7 @@ TEST(AFinishedRenderGoesOnToMore, 1)
         assert_int_equal(vplRenderOptions_SetAll(&o, MORE[i]), VPL_SUCCESS);
         goOn(scene, &o, &first, &last, &stats);
         assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-        for (bool done = false; !done;) {
-            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-        }
+        stepToEnd(r);
         ended = look(r, NULL);
         assertSeenSame(&last, &ended);
         vplRenderer_Destroy(r);

@@ -158,9 +158,7 @@ static double raysOf(const vplScene* scene, const vplRenderOptions* o, vplImage*
     vplRenderer* r;
     vplRenderStats stats;
     assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
-    for (bool done = false; !done;) {
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-    }
+    stepToEnd(r);
     assert_int_equal(vplRenderer_GetImage(r, imageOut, &stats), VPL_SUCCESS);
     const double edges = (double)r->edgePixels * r->edgePaths * r->judged.pathRays;
     vplRenderer_Destroy(r);

@@ -81,9 +81,7 @@ TEST(AnInterruptedPassIsNoPartOfThePicture, 2)
     o.method = VPL_METHOD_KELLER;
     o.stop.budgetMs = 120;
     assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-    for (bool done = false; !done;) {
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-    }
+    stepToEnd(r);
     assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
     vplRenderOptions replay = vplRenderer_GetPlan(r)->options;
     replay.lights.minDistance = -1; // each pass has its own
@@ -133,9 +131,7 @@ TEST(APassEndsWhereTheTimeIsUp, 2)
     o.progressUser = &waiting;
     assert_int_equal(vplRenderer_Create(scene, &o, &waiting.renderer), VPL_SUCCESS);
     waiting.until = secondsNow() + 0.4;
-    for (bool done = false; !done;) {
-        assert_int_equal(vplRenderer_Step(waiting.renderer, &done), VPL_SUCCESS);
-    }
+    stepToEnd(waiting.renderer);
     assert_int_equal(vplRenderer_GetImage(waiting.renderer, &image, &stats), VPL_SUCCESS);
     assert_int_equal(stats.passes, 1);
     vplImage_Destroy(image);
@@ -235,34 +231,6 @@ static const char* savedFile(void)
     return temporaryName(".state");
 }
 
-// Saves a render after so many steps, or as many as it has.
-static void saveAfter(const vplScene* scene, const vplRenderOptions* o, int steps, bool* endedOut)
-{
-    vplRenderer* r;
-    *endedOut = false;
-    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
-    for (int i = 0; i < steps && !*endedOut; i++) {
-        assert_int_equal(vplRenderer_Step(r, endedOut), VPL_SUCCESS);
-    }
-    assert_int_equal(vplRenderer_Save(r, savedFile()), VPL_SUCCESS);
-    vplRenderer_Destroy(r);
-}
-
-static void finishSaved(const vplScene* scene, const vplRenderOptions* o, vplRenderStats* stats)
-{
-    vplRenderer* r;
-    vplImage* image;
-    bool done;
-    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Load(r, savedFile(), &done), VPL_SUCCESS);
-    while (!done) {
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-    }
-    assert_int_equal(vplRenderer_GetImage(r, &image, stats), VPL_SUCCESS);
-    vplImage_Destroy(image);
-    vplRenderer_Destroy(r);
-}
-
 // What was learnt of the error is saved, too: the render ends where it would have ended.
 TEST(ARenderThatWasSavedEndsAtTheSamePass, 2)
 {
@@ -286,8 +254,8 @@ TEST(ARenderThatWasSavedEndsAtTheSamePass, 2)
         o.stop.maxError = CASES[i].error;
         vplImage_Destroy(renderScene(scene, &o, &whole));
         for (int steps = 1; !ended; steps += 2) {
-            saveAfter(scene, &o, steps, &ended);
-            finishSaved(scene, &o, &stats);
+            saveAfter(scene, &o, steps, savedFile(), &ended);
+            finishSaved(scene, &o, savedFile(), &stats);
             assert_true(stats.passes == whole.passes && stats.imageHash == whole.imageHash);
         }
         vplScene_Destroy(scene);
@@ -330,7 +298,7 @@ static bool stopAt(const vplScene* scene, vplRenderOptions o, int at, bool saves
             if (saves && vplRenderer_GetPassCount(r) > 0) {
                 assert_int_equal(vplRenderer_Save(r, savedFile()), VPL_SUCCESS);
                 vplRenderer_Destroy(r);
-                finishSaved(scene, &o, stats);
+                finishSaved(scene, &o, savedFile(), stats);
                 return true;
             }
         }
@@ -381,9 +349,7 @@ TEST(BlocksShareTheError, 2)
         o.output.height = 40; // whole blocks
         o.stop.maxError = 0.1;
         assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-        for (bool done = false; !done;) {
-            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-        }
+        stepToEnd(r);
         assert_int_equal(vplRenderer_GetErrorMap(r, &map), VPL_SUCCESS);
         assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
         assert_true(map->width == 8 && map->height == 5);

@@ -90,10 +90,7 @@ static vplRenderStats renderPlans(const vplScene* scene, const vplRenderOptions*
     vplRenderer* r;
     vplRenderStats stats;
     assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
-    *plansOut = 0;
-    for (bool done = false; !done; ++*plansOut) {
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-    }
+    *plansOut = stepToEnd(r);
     assert_int_equal(vplRenderer_GetImage(r, imageOut, &stats), VPL_SUCCESS);
     const vplRenderOptions* last = &vplRenderer_GetPlan(r)->options;
     *patchesOut = last->method == VPL_METHOD_RADIOSITY ? last->radiosity.patches : 0;
@@ -194,23 +191,10 @@ TEST(ARenderWithPatchesIsResumedToTheSameBits, 2, SLOW)
     assert_true(plans > 1);
     for (int steps = 1; steps <= plans; steps++) {
         vplRenderStats stats;
-        vplRenderer* r;
-        bool done = false;
-        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-        for (int i = 0; i < steps; i++) {
-            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-        }
-        assert_int_equal(vplRenderer_Save(r, path), VPL_SUCCESS);
-        vplRenderer_Destroy(r);
-        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-        assert_int_equal(vplRenderer_Load(r, path, &done), VPL_SUCCESS);
-        while (!done) {
-            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-        }
-        assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
+        bool ended;
+        saveAfter(scene, &o, steps, path, &ended);
+        finishSaved(scene, &o, path, &stats);
         assert_true(stats.imageHash == whole.imageHash);
-        vplImage_Destroy(image);
-        vplRenderer_Destroy(r);
     }
     remove(path);
     vplScene_Destroy(scene);

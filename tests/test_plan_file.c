@@ -66,9 +66,7 @@ static uint64_t renderAndWrite(const vplScene* scene, const vplRenderOptions* o)
     vplImage* image;
     vplRenderStats stats;
     assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
-    for (bool done = false; !done;) {
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-    }
+    stepToEnd(r);
     assert_int_equal(vplRenderer_WritePlan(r, planFile()), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Finish(r, &image, NULL, &stats), VPL_SUCCESS);
     vplImage_Destroy(image);
