@@ -382,6 +382,40 @@ TEST(RoundingIsNotScaledUp, 2)
     closeRoom(&room);
 }
 
+// Small sides between a box and the floor see what they see, and not what the group around them does: without, the irradiance of
+// one is 0.077 off where the ceiling has a radiosity of 1.
+TEST(SmallSidesSeeForThemselves, 2, SLOW)
+{
+    Room room;
+    const vplLinkDef def = vplDefaultLinkDef();
+    const vplFormFactorDef all = vplDefaultFormFactorDef();
+    openRoom(&room, boxInRoom(context), 5000);
+    linkRoom(&room, &def);
+    assert_int_equal(vplFormFactors_Create(room.sides, &all, &room.factors), VPL_SUCCESS);
+    vplRgb* b = calloc((size_t)room.sides->count, sizeof *b);
+    for (int i = 0; i < room.sides->count; i++) {
+        const vplPatchSide* s = &room.sides->sides[i];
+        b[i].r = s->normal.y < -0.99f && s->incentre.y > 0.9f ? 1 : 0; // the ceiling
+    }
+    vplRgb *e = gather(&room, NULL, b), *wanted = gather(&room, room.factors, b);
+    double most = 0;
+    int compared = 0;
+    for (int i = 0; i < room.sides->count; i++) {
+        const vplPatchSide* s = &room.sides->sides[i];
+        if (s->normal.y > 0.99f && s->incentre.y < -0.9f) {
+            const double off = fabs((double)e[i].r - (double)wanted[i].r);
+            most = off > most ? off : most;
+            compared++;
+        }
+    }
+    assert_true(compared > 900);
+    assert_true(most < 0.04); // measured: 0.033
+    free(b);
+    free(e);
+    free(wanted);
+    closeRoom(&room);
+}
+
 // ---- cost
 
 TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
@@ -402,9 +436,9 @@ TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
         assert_true(vplContext_GetBytes(context) - before < 10000 * (size_t)sides[k]);
         closeRoom(&room);
     }
-    // Measured: 3.2 times the links and 2.3 times the rays, of which 32 per side are the side's own; 8.7 and 3.7 kB
-    // per side.
-    assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 5 * rays[0]);
+    // Measured: 3.9 times the links and 5.3 times the rays, of which 32 per side are the side's own. Before sides of a group were
+    // tried by themselves it was 3.2 and 2.3 times.
+    assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 6 * rays[0]);
 }
 
 // The unoccluded form factor of two nodes, as points find it.

@@ -2,6 +2,10 @@
 // Tests of the path-traced reference against analytic answers: furnaces, direct light, and bounces.
 #include "path_scenes.h"
 
+#include "reference/sparse_paths.h"
+
+#include <string.h>
+
 // ---- a furnace: if all walls reflect rho and emit E, radiance is E / (1 - rho) everywhere
 
 TEST_ALONE(FurnaceGlowsEverywhereAlike, SLOW)
@@ -230,4 +234,42 @@ TEST(SphereMatchesTheTable, 2, SLOW)
         vplScene_Destroy(scene);
     }
     freeTable(&t);
+}
+
+// ---- what paths keep
+
+// A render's plan owns the camera and the emitters, and another plan may follow while the same pixels are traced further.
+TEST(PathsGoOnWithoutTheCameraThatTheyBeganWith, 2)
+{
+    vplScene* scene = newScene(context);
+    vplGeometry* geometry;
+    vplSparsePixel pixels[2][4] = {{{0}}};
+    addRoom(scene, addGrey(scene, 0.5f, 0));
+    assert_int_equal(vplGeometry_Create(scene, &geometry), VPL_SUCCESS);
+    for (int run = 0; run < 2; run++) {
+        vplCameraDef camera = vplDefaultCameraDef();
+        vplEmitterDef lamp = vplDefaultEmitterDef();
+        camera.eye = (vplVec3){0.3f, 0.1f, 0.2f};
+        camera.target = (vplVec3){-1, -0.4f, -0.8f};
+        vplPathDef def = vplDefaultPathDef();
+        def.camera = &camera;
+        def.emitters = &lamp;
+        def.emitterCount = 1;
+        def.width = def.height = 4;
+        for (int i = 0; i < 4; i++) {
+            pixels[run][i].x = pixels[run][i].y = i;
+        }
+        vplSparsePaths paths;
+        assert_int_equal(vplSparsePaths_Init(&paths, geometry, &def, pixels[run], 4), VPL_SUCCESS);
+        if (run == 1) {
+            memset(&camera, 0xff, sizeof camera);
+            memset(&lamp, 0xff, sizeof lamp);
+        }
+        assert_int_equal(vplSparsePaths_Trace(&paths, 8, (vplProgressRange){NULL, NULL, 0, 1}), VPL_SUCCESS);
+        vplSparsePaths_Free(&paths);
+    }
+    assert_true(pixels[0][1].sums[0].r > 0);
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
 }

@@ -95,7 +95,7 @@ static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLan
 void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
 {
     const vplPathScene* s = path->scene;
-    const vplCameraDef* camera = s->def.camera;
+    const vplCameraDef* camera = &s->camera;
     float u[4], start[4];
     vplHit hit;
     vplPath_Draw(path, CAMERA_SET, u);

@@ -37,8 +37,8 @@ static vplResult findTrees(vplPathScene* s)
 
 vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const vplPathDef* def)
 {
-    *s = (vplPathScene){.geometry = geometry, .def = *def, .sobol = vplSobol_Make()};
-    const vplCameraDef* camera = def->camera;
+    *s = (vplPathScene){.geometry = geometry, .def = *def, .camera = *def->camera, .sobol = vplSobol_Make()};
+    const vplCameraDef* camera = &s->camera;
     double sine, cosine;
     vplSinCos(camera->fovY / 2, &sine, &cosine);
     s->forward = vplNormalize(vplSub(camera->target, camera->eye));
@@ -48,6 +48,8 @@ vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const 
     s->pixelWidth = (float)(2 * s->scaleY / def->height);
     s->scaleX = s->scaleY * def->width / def->height;
     TRY(findTrees(s));
+    s->def.camera = NULL;
+    s->def.emitters = NULL;
     s->power = vplEmission_Power(s->emission);
     if (s->emission->environment >= 0) {
         const double* sums = s->emission->cumulative + s->emission->environment;
@@ -73,7 +75,7 @@ void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4])
 
 vplRay vplPathScene_CameraRay(const vplPathScene* s, int x, int y, const float offset[2])
 {
-    const vplCameraDef* camera = s->def.camera;
+    const vplCameraDef* camera = &s->camera;
     // Pixel centres are moved slightly right and down, so that an edge through a centre belongs to the
     // surface that the rasterizer's top-left rule gives it to. In a symmetric room whole rows of centres lie
     // on edges.

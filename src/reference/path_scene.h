@@ -54,7 +54,8 @@ typedef struct vplPathScene {
     const vplEmitterTrees*
         trees; // without one of emitters a vertex asks each, without one of triangles it chooses by power
     vplEmitterTrees* ownTrees; // NULL: the def's
-    vplPathDef def;
+    vplPathDef def;            // without the camera and the emitters, which need not outlive it
+    vplCameraDef camera;
     vplSobol sobol;
     float pixelWidth;            // at a depth of one metre, metres
     vplVec3 right, up, forward;  // of the camera
@@ -64,7 +65,7 @@ typedef struct vplPathScene {
     double skyShare;
 } vplPathScene;
 
-// The geometry, the camera and the emitters must outlive the scene. On failure there is nothing to free.
+// Copies the camera and the emitters; the geometry and the def's trees must outlive the scene. On failure there is nothing to free.
 vplResult vplPathScene_Init(vplPathScene* scene, const vplGeometry* geometry, const vplPathDef* def);
 
 void vplPathScene_Free(vplPathScene* scene);

@@ -16,7 +16,7 @@ typedef struct vplPathStats {
 
 typedef struct vplPathTracer vplPathTracer;
 
-// The geometry, the camera and the emitters must outlive the tracer.
+// The geometry and the trees of the def must outlive the tracer.
 vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* def, vplPathTracer** tracerOut);
 
 // NULL is allowed.

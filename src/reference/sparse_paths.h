@@ -25,7 +25,7 @@ typedef struct vplSparsePaths {
     int done, now; // paths of each half of each pixel: before the pass under way, and in it
 } vplSparsePaths;
 
-// The geometry, the pixels, which are to be zero but for x and y, and what the def refers to must outlive it.
+// The geometry, the def's trees and the pixels, which are to be zero but for x and y, must outlive it.
 vplResult vplSparsePaths_Init(vplSparsePaths* paths, const vplGeometry* geometry, const vplPathDef* def,
                               vplSparsePixel* pixels, int count);
 

@@ -118,11 +118,6 @@ void vplLinkPoints_Draw(const vplLinkWork* work, int node)
 
 // ---- rays
 
-static vplVec3 pointOf(const float from[3][POINTS], int i)
-{
-    return vplVec(from[0][i], from[1][i], from[2][i]);
-}
-
 // The ends of a ray. Points are in the order of area, so any four consecutive rays leave from all quarters of a
 // node, and arrive at all quarters of the other.
 static int fromPoint(const vplLinkSight* sight, int ray)
@@ -149,8 +144,9 @@ static void join(const vplLinkWork* work, const vplLinkSight* sight, int first, 
         const int i = from[l] = fromPoint(sight, first + l), k = to[l] = toPoint(sight, first + l);
         amount[l] = first + l < sight->to ? sight->terms->of[i][k] : 0;
         if (amount[l] > 0) {
-            const vplVec3 way = vplWayToLight(pointOf(q->at, k), pointOf(q->normal, k), pointOf(p->at, i));
-            const vplRay ray = {pointOf(p->origin, i), way, {p->skipFirst[i], p->skipCount[i]}};
+            const vplVec3 way =
+                vplWayToLight(vplLinkPoint(q->at, k), vplLinkPoint(q->normal, k), vplLinkPoint(p->at, i));
+            const vplRay ray = {vplLinkPoint(p->origin, i), way, {p->skipFirst[i], p->skipCount[i]}};
             vplRayPacket_Set(&packet, l, &ray);
             seen->openP[i] += amount[l];
             seen->openQ[k] += amount[l];

@@ -101,6 +101,17 @@ static void drawPointsTask(void* data, int task, int worker)
     }
 }
 
+static const int* findLeaves(const struct vplLinkTree* tree, int sides, vplArena* scratch)
+{
+    int* leafAt = vplArena_Alloc(scratch, (size_t)sides, sizeof *leafAt);
+    for (int node = 0; leafAt != NULL && node < tree->nodeCount; node++) {
+        if (tree->nodes[node].children < 0) {
+            leafAt[tree->nodes[node].first] = node;
+        }
+    }
+    return leafAt;
+}
+
 static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
 {
     const vplLinkDef* def = r->work.def;
@@ -108,6 +119,7 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
     r->batch = vplArena_Alloc(scratch, BATCH, sizeof *r->batch);
     r->answers = vplArena_Alloc(scratch, BATCH, sizeof *r->answers);
     r->work.points = vplArena_Alloc(scratch, (size_t)nodes, sizeof *r->work.points);
+    r->work.leafAt = findLeaves(r->work.tree, r->work.sides->count, scratch);
     TRY(vplArena_Check(scratch));
     TRY(vplReserve(r->context, &r->pairs, &r->pairCapacity, 1, sizeof *r->pairs));
     if (nodes > 0) {

@@ -5,7 +5,9 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/factors/shaft.h"
+#include "geometry/bvh.h"
 #include "radiosity/links/link_pair.h"
+#include "visibility/hemi_map.h"
 
 #include <math.h>
 
@@ -92,6 +94,74 @@ static int lookBetween(const vplJudgedPair* pair, const vplLinkTerms* terms, dou
     return rays;
 }
 
+// ---- sides by themselves
+
+// A pair is divided if a side of it sees a share of the other group that differs from the pair's share by more than so many times
+// the allowed error, as a fraction of what the pair exchanges where nothing is. The points of a group miss its small sides: the
+// corner between a box and the floor had light through the box (room, 20,000 patches: relmse 2.1 times that of all pairs, now 1.1).
+static const double DIFFERENT = 3;
+
+// At most so many sides of a group are tried, with so many rays each.
+enum { TRIED_SIDES = 64, RAYS_OF_SIDE = 4 };
+
+// Sets ray l of a packet, from a side to a group. False if the points that it joins do not face each other.
+static bool setSideRay(const vplLinkPoints* side, const vplLinkPoints* group, unsigned number, int l,
+                       vplRayPacket* packet)
+{
+    const int i = 2 * (l % RAYS_OF_SIDE) + (int)(number % 2),
+              k = (int)((5 * number + 3 * (unsigned)l) % VPL_LINK_POINTS);
+    const vplVec3 to = vplLinkPoint(group->at, k), normal = vplLinkPoint(group->normal, k);
+    const vplVec3 way = vplWayToLight(to, normal, vplLinkPoint(side->at, i));
+    const vplRay ray = {vplLinkPoint(side->origin, i), way, {side->skipFirst[i], side->skipCount[i]}};
+    vplRayPacket_Set(packet, l, &ray);
+    return vplDot(way, vplLinkPoint(side->normal, i)) > 0 && vplDot(way, normal) < 0;
+}
+
+// Tests whether some side of `from` sees a share of `to` that differs from `share` by more than `most`.
+static bool someSideDiffers(const vplJudgedPair* pair, int32_t from, int32_t to, double share, double most)
+{
+    const vplLinkWork* work = pair->work;
+    const vplLinkNode* node = &work->tree->nodes[from];
+    const int step = (node->count + TRIED_SIDES - 1) / TRIED_SIDES;
+    for (int first = 0; first < node->count; first += step * (VPL_RAY_PACKET / RAYS_OF_SIDE)) {
+        float cast[VPL_RAY_PACKET], seen[VPL_RAY_PACKET];
+        vplRayPacket packet;
+        packet.active = 0;
+        for (int l = 0; l < VPL_RAY_PACKET; l++) {
+            const int side = first + step * (l / RAYS_OF_SIDE);
+            cast[l] = side < node->count && setSideRay(&work->points[work->leafAt[node->first + side]],
+                                                       &work->points[to], (unsigned)side, l, &packet);
+            seen[l] = cast[l];
+        }
+        pair->answer->rays += vplGeometry_Darken(work->sides->patches->geometry, &packet, 1, seen);
+        for (int l = 0; l < VPL_RAY_PACKET; l += RAYS_OF_SIDE) {
+            float all = 0, open = 0;
+            for (int i = l; i < l + RAYS_OF_SIDE; i++) {
+                all += cast[i];
+                open += seen[i];
+            }
+            if (all > 0 && fabs((double)(open / all) - share) > most) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Tests whether some side sees otherwise than its group, of whose exchange the fraction `share` passes.
+static bool sidesDiffer(const vplJudgedPair* pair, double open, double share)
+{
+    const double most = DIFFERENT * pair->work->allowed / open;
+    if (pair->work->leafAt == NULL || vplRowsAreScaled(pair) || fmax(share, 1 - share) <= most) {
+        return false;
+    }
+    const int32_t p = pair->ids->p, q = pair->ids->q;
+    return (pair->p->count > 1 && someSideDiffers(pair, p, q, share, most)) ||
+           (pair->q->count > 1 && someSideDiffers(pair, q, p, share, most));
+}
+
+// ---- the search
+
 vplLinkView vplFindBetween(const vplJudgedPair* pair, const vplLinkTerms* terms, bool rough, double open,
                            vplLinkSeen* seen)
 {
@@ -107,7 +177,8 @@ vplLinkView vplFindBetween(const vplJudgedPair* pair, const vplLinkTerms* terms,
         return VPL_VIEW_CLEAR;
     }
     if (!answer->visible) {
-        return VPL_VIEW_HIDDEN;
+        answer->visible = sidesDiffer(pair, open, 0);
+        return answer->visible ? VPL_VIEW_DIVIDED : VPL_VIEW_HIDDEN;
     }
     const double v = seen->visible / seen->open;
     if (rough ||
@@ -117,5 +188,5 @@ vplLinkView vplFindBetween(const vplJudgedPair* pair, const vplLinkTerms* terms,
     const bool less = vplRowsAreScaled(pair) && open < 4 * allowed;
     const int wanted = less ? FEW_RAYS * ((int)(open / allowed) + 1) : VPL_MOST_LINK_RAYS;
     vplCastPairRays(pair, terms, rays, open > allowed ? wanted : rays, seen);
-    return VPL_VIEW_BLOCKED;
+    return sidesDiffer(pair, open, seen->visible / seen->open) ? VPL_VIEW_DIVIDED : VPL_VIEW_BLOCKED;
 }

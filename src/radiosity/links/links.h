@@ -85,6 +85,7 @@ typedef struct vplLinkWork {
     const vplLinkDef* def;
     double allowed;        // error of one link
     vplLinkPoints* points; // of each node
+    const int* leafAt; // the node of each side, in the tree's order; NULL: sides are not tried by themselves
 } vplLinkWork;
 
 // The error of one link that def->error means for these sides.
@@ -92,6 +93,12 @@ double vplAllowedLinkError(const vplPatchSides* sides, const vplLinkDef* def);
 
 // Draws a node's points on its open cells, stratified by area, and fills work->points[node].
 void vplLinkPoints_Draw(const vplLinkWork* work, int node);
+
+// Point i, or its normal, or the origin of its rays.
+static inline vplVec3 vplLinkPoint(const float from[3][VPL_LINK_POINTS], int i)
+{
+    return vplVec(from[0][i], from[1][i], from[2][i]);
+}
 
 // Rays between the points of two nodes: each eight use every point of either node once, and any four leave and
 // arrive at points of all quarters.

@@ -18,7 +18,7 @@ typedef struct vplJudgement {
 } vplJudgement;
 
 // Chooses pixels of the picture and traces the first paths. Where neighbours differ much, as at edges, more
-// pixels are chosen, and each counts for less. The run's geometry and plan must outlive it.
+// pixels are chosen, and each counts for less. The run's geometry must outlive it.
 vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, vplTruth** truthOut);
 
 // NULL is allowed.
