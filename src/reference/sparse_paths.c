@@ -65,6 +65,9 @@ vplResult vplSparsePaths_Trace(vplSparsePaths* paths, int each, vplProgressRange
         vplParallelForProgress(context, (paths->count + CHUNK - 1) / CHUNK, traceChunk, paths, progress);
     if (result == VPL_SUCCESS) {
         paths->done += each;
+        for (int i = 0; i < paths->count; i++) {
+            paths->cast += paths->pixels[i].rays - before[i].rays;
+        }
     } else {
         memcpy(paths->pixels, before, (size_t)paths->count * size);
     }

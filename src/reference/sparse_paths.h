@@ -23,6 +23,7 @@ typedef struct vplSparsePaths {
     vplSparsePixel* pixels; // borrowed
     int count;
     int done, now; // paths of each half of each pixel: before the pass under way, and in it
+    int64_t cast;  // rays of all passes
 } vplSparsePaths;
 
 // The geometry, the def's trees and the pixels, which are to be zero but for x and y, must outlive it.

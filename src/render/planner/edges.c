@@ -95,6 +95,11 @@ void vplEdges_Destroy(vplEdges* edges)
     vplArena_Destroy(edges != NULL ? edges->arena : NULL);
 }
 
+int64_t vplEdges_Rays(const vplEdges* edges)
+{
+    return edges->paths.cast;
+}
+
 // ---- the picture
 
 void vplEdges_Draw(const vplEdges* e, vplImage* picture)

@@ -15,12 +15,15 @@ int vplContrastBin(const vplImage* image, int x, int y);
 typedef struct vplEdges vplEdges;
 
 // Chooses at most `most` pixels of the picture, all those of the highest bins that fit, and traces `paths` paths through each. The
-// run's geometry and plan must outlive it.
+// run's geometry must outlive it.
 vplResult vplEdges_Create(const vplRun* run, const vplImage* picture, int most, int paths,
                           vplEdges** edgesOut);
 
 // NULL is allowed.
 void vplEdges_Destroy(vplEdges* edges);
+
+// Rays that were cast for it.
+int64_t vplEdges_Rays(const vplEdges* edges);
 
 // Replaces the chosen pixels of a picture by their paths.
 void vplEdges_Draw(const vplEdges* edges, vplImage* picture);

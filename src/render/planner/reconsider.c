@@ -190,8 +190,10 @@ static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay
     return VPL_SUCCESS;
 }
 
-// Before the passes so far are left for a way that costs far more, passes of this share of its cost make the noise better known:
-// rare lights that carry much of it may not be among the first (hall: 23 % after six passes, where it is 40 %).
+// A plan is left for a finer one, or for paths, only when its passes have cost this share of what that would cost. Where few lights
+// find the way, the noise of the first passes is far too low, and looks like bias: hall, 23 % after six passes, where it is 40 %.
+// Two of five pictures of the hall then were path-traced for more than 200 s instead of 12 to 17 s, one of furnished for 87 s
+// instead of 12.
 static const double KNOWING = 0.5;
 
 // The way that needs least for the error.

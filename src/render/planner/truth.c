@@ -152,6 +152,11 @@ int vplTruth_Paths(const vplTruth* truth)
     return 2 * truth->paths.done;
 }
 
+int64_t vplTruth_Rays(const vplTruth* truth)
+{
+    return truth != NULL ? truth->paths.cast : 0;
+}
+
 // ---- the error
 
 // The mean square error of one pixel's values, and the mean of its true values.

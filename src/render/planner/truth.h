@@ -46,6 +46,9 @@ enum { VPL_SURE_PATHS = 64 };
 
 int vplTruth_Paths(const vplTruth* truth);
 
+// Rays that were cast since the truth was made or loaded. NULL: 0.
+int64_t vplTruth_Rays(const vplTruth* truth);
+
 // A pixel of the truth, for a picture of the same size. Sums over all of them are estimates for the whole picture.
 typedef struct vplTruthPixel {
     int x, y;
