@@ -30,6 +30,8 @@ typedef struct vplRenderStats {
     int stageCount;
     double totalMs, cpuMs; // wall clock; processor time of all threads
     int64_t drawCalls, fragments;
+    // Rays of all passes and plans, of pixels at edges, and of the pixels that tell the error; and tests of rays against
+    // objects.
     int64_t rays, rayObjectTests;
     int triangles, objects;
 
