@@ -430,3 +430,20 @@ TEST(EnergyIsThatOfPathsWhereSurfacesCross, 2, SLOW)
         vplScene_Destroy(scene);
     }
 }
+
+// A dark room behind a wall of 2 cm with a slot of 10 x 20 cm. Four pictures of 1,024 paths per pixel had means of 4.96e-4 to
+// 5.18e-4.
+TEST(LightComesThroughASlot, 2)
+{
+    vplScene* scene = openScene(context, "tests/data/slot.json");
+    for (int links = 0; links < 2; links++) {
+        vplRenderOptions o = radiosityOptions(2000);
+        o.output.width = 64;
+        o.output.height = 36;
+        o.radiosity.hierarchy = links ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
+        vplImage* image = showOf(scene, o, VPL_SHOW_PICTURE);
+        assertNear(meanOf(image) / 5.05e-4, 1, 0.12, "energy", links); // measured: 1.081, 1.027
+        vplImage_Destroy(image);
+    }
+    vplScene_Destroy(scene);
+}
