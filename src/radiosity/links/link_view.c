@@ -114,8 +114,11 @@ static bool setSideRay(const vplLinkPoints* side, const vplLinkPoints* group, un
     const vplVec3 to = vplLinkPoint(group->at, k), normal = vplLinkPoint(group->normal, k);
     const vplVec3 way = vplWayToLight(to, normal, vplLinkPoint(side->at, i));
     const vplRay ray = {vplLinkPoint(side->origin, i), way, {side->skipFirst[i], side->skipCount[i]}};
+    if (!(vplDot(way, vplLinkPoint(side->normal, i)) > 0 && vplDot(way, normal) < 0)) {
+        return false;
+    }
     vplRayPacket_Set(packet, l, &ray);
-    return vplDot(way, vplLinkPoint(side->normal, i)) > 0 && vplDot(way, normal) < 0;
+    return true;
 }
 
 // Tests whether some side of `from` sees a share of `to` that differs from `share` by more than `most`.
