@@ -5,6 +5,16 @@
 
 #include <string.h>
 
+#ifndef __has_feature // clang's
+#define __has_feature(x) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || __has_feature(address_sanitizer)
+#include <sanitizer/asan_interface.h>
+#else
+#define ASAN_POISON_MEMORY_REGION(start, size)   ((void)(start), (void)(size))
+#define ASAN_UNPOISON_MEMORY_REGION(start, size) ((void)(start), (void)(size))
+#endif
+
 // One cache line, and the widest vector.
 enum { ALIGNMENT = 64 };
 
@@ -43,6 +53,8 @@ void* vplAlloc(vplContext* context, size_t count, size_t size)
     uintptr_t start = ((uintptr_t)header.raw + sizeof(Header) + ALIGNMENT - 1) & ~(uintptr_t)(ALIGNMENT - 1);
     void* memory = (void*)start;
     *headerOf(memory) = header;
+    // Up to 64 bytes behind the block are left, which the address sanitizer is told not to allow.
+    ASAN_POISON_MEMORY_REGION((char*)memory + bytes, (uintptr_t)header.raw + total - start - bytes);
     return memory;
 }
 
@@ -65,6 +77,7 @@ void vplFree(vplContext* context, void* memory)
     if (memory != NULL) {
         const Header header = *headerOf(memory);
         context->bytes -= header.total;
+        ASAN_UNPOISON_MEMORY_REGION(header.raw, header.total);
         context->def.alloc(context->def.allocUser, header.raw, header.total, 0);
     }
 }
