@@ -190,11 +190,11 @@ static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay
     return VPL_SUCCESS;
 }
 
-// A plan is left for a finer one, or for paths, only when its passes have cost this share of what that would cost. Where few lights
-// find the way, the noise of the first passes is far too low, and looks like bias: hall, 23 % after six passes, where it is 40 %.
-// Two of five pictures of the hall then were path-traced for more than 200 s instead of 12 to 17 s, one of furnished for 87 s
-// instead of 12.
-static const double KNOWING = 0.5;
+// A plan is left for a finer one, or for paths, only when its passes have cost this share of what that would cost, or when the
+// square of its noise is less than a tenth of that of its bias. Where few lights find the way, the noise of the first passes is far too
+// low, and looks like bias: hall, 23 % after six passes, where it is 40 %. Two of five pictures of the hall then were path-traced
+// for more than 200 s instead of 12 to 17 s, one of furnished for 87 s instead of 12.
+static const double KNOWING = 0.5, UNSURE = 0.1;
 
 // The way that needs least for the error.
 static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, bool* doneOut, bool* moreOut)
@@ -213,8 +213,8 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
         *moreOut = true;
         return vplRefineTruth(r);
     }
-    const bool leaves = paths < way.rays || way.finer > 0;
-    if (leaves && s->spent < KNOWING * fmin(paths, way.rays)) {
+    const bool leaves = paths < way.rays || way.finer > 0, unsure = s->noise > UNSURE * s->bias;
+    if (leaves && unsure && s->spent < KNOWING * fmin(paths, way.rays)) {
         return VPL_SUCCESS; // more passes
     }
     if (paths < way.rays) {
