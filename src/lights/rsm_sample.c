@@ -165,6 +165,9 @@ vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflecti
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplRsmSampleDef.count is %d, must be in [0, %d]",
                        def->count, VPL_MAX_LIGHTS);
     }
+    if (mapCount < 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "mapCount is %d, must be at least 0", mapCount);
+    }
     Sampling s = {
         .geometry = geometry, .maps = maps, .mapCount = mapCount, .count = def->count, .shift = def->shift};
     vplLightArrays arrays;
