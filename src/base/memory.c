@@ -53,7 +53,7 @@ void* vplAlloc(vplContext* context, size_t count, size_t size)
     uintptr_t start = ((uintptr_t)header.raw + sizeof(Header) + ALIGNMENT - 1) & ~(uintptr_t)(ALIGNMENT - 1);
     void* memory = (void*)start;
     *headerOf(memory) = header;
-    // Up to 64 bytes behind the block are left, which the address sanitizer is told not to allow.
+    // Up to 64 spare bytes follow the block. The address sanitizer reports accesses to them.
     ASAN_POISON_MEMORY_REGION((char*)memory + bytes, (uintptr_t)header.raw + total - start - bytes);
     return memory;
 }

@@ -105,7 +105,7 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
     // While the list grows, the old one is held, too. The stack has room for all parts of a batch.
     const double finding = 5 / 3.0 * list + 3 * batch * sizeof(vplLinkPair) +
                            VPL_LINK_BATCH * (sizeof(vplLinkPair) + sizeof(vplLinkAnswer)) +
-                           nodes * sizeof *c.work.points - sorted;
+                           nodes * sizeof *c.work.points + count * sizeof *c.work.leafAt - sorted;
     *scratchOut = fmax(finding, list);
     return result;
 }

@@ -118,6 +118,13 @@ void vplLinkPoints_Draw(const vplLinkWork* work, int node)
 
 // ---- rays
 
+vplRay vplLinkRay(const vplLinkPoints* from, int i, const vplLinkPoints* to, int k)
+{
+    const vplVec3 way =
+        vplWayToLight(vplLinkPoint(to->at, k), vplLinkPoint(to->normal, k), vplLinkPoint(from->at, i));
+    return (vplRay){vplLinkPoint(from->origin, i), way, {from->skipFirst[i], from->skipCount[i]}};
+}
+
 // The ends of a ray. Points are in the order of area, so any four consecutive rays leave from all quarters of a
 // node, and arrive at all quarters of the other.
 static int fromPoint(const vplLinkSight* sight, int ray)
@@ -144,9 +151,7 @@ static void join(const vplLinkWork* work, const vplLinkSight* sight, int first, 
         const int i = from[l] = fromPoint(sight, first + l), k = to[l] = toPoint(sight, first + l);
         amount[l] = first + l < sight->to ? sight->terms->of[i][k] : 0;
         if (amount[l] > 0) {
-            const vplVec3 way =
-                vplWayToLight(vplLinkPoint(q->at, k), vplLinkPoint(q->normal, k), vplLinkPoint(p->at, i));
-            const vplRay ray = {vplLinkPoint(p->origin, i), way, {p->skipFirst[i], p->skipCount[i]}};
+            const vplRay ray = vplLinkRay(p, i, q, k);
             vplRayPacket_Set(&packet, l, &ray);
             seen->openP[i] += amount[l];
             seen->openQ[k] += amount[l];

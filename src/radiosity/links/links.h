@@ -100,6 +100,9 @@ static inline vplVec3 vplLinkPoint(const float from[3][VPL_LINK_POINTS], int i)
     return vplVec(from[0][i], from[1][i], from[2][i]);
 }
 
+// The ray from point i of a node to point k of another, which it reaches at 1.
+vplRay vplLinkRay(const vplLinkPoints* from, int i, const vplLinkPoints* to, int k);
+
 // Rays between the points of two nodes: each eight use every point of either node once, and any four leave and
 // arrive at points of all quarters.
 typedef struct vplLinkSight {

@@ -63,8 +63,8 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     return result;
 }
 
-// What was asked for, as far as virtual lights do it: --method auto does not choose radiosity where the clamp is compensated, which
-// it would decide for virtual lights anyway.
+// The options that were asked for, with rays that compensate the clamp. Virtual lights would have these rays anyway, and
+// --method auto does not choose radiosity where they are asked for.
 static vplRenderOptions askedOfLights(const vplRenderer* r)
 {
     vplRenderOptions o = r->asked;
@@ -148,8 +148,9 @@ static vplResult traceEdges(vplRenderer* r, const vplWay* way, bool* moreOut)
     return vplRenderer_TraceEdges(r, way->pixels, way->paths);
 }
 
-// Ends a way that needs no more passes: by edges, or where none are left, by paths of the truth, which prove that the error is met.
-static vplResult endBy(vplRenderer* r, const vplWay* way, bool* moreOut)
+// Follows a way that needs no more passes: traces its pixels at edges or, if it has none, more paths of the truth, which may prove
+// that the error is met.
+static vplResult finishWay(vplRenderer* r, const vplWay* way, bool* moreOut)
 {
     if (way->pixels > 0) {
         return traceEdges(r, way, moreOut);
@@ -190,10 +191,11 @@ static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay
     return VPL_SUCCESS;
 }
 
-// A plan is left for a finer one, or for paths, only when its passes have cost this share of what that would cost, or when the
-// square of its noise is less than a tenth of that of its bias. Where few lights find the way, the noise of the first passes is far too
-// low, and looks like bias: hall, 23 % after six passes, where it is 40 %. Two of five pictures of the hall then were path-traced
-// for more than 200 s instead of 12 to 17 s, one of furnished for 87 s instead of 12.
+// The planner leaves a plan for a finer one, or for path tracing, only when the passes so far have cost KNOWING times what the other
+// would cost, or when the squared noise is at most UNSURE times the squared bias. Where few lights reach the picture, the noise of
+// the first passes is estimated far too low, and the rest of the error looks like bias (hall: 23 % after six passes, where it is
+// 40 %). Without this rule two of five pictures of the hall took more than 200 s instead of 11 to 17 s, and one of furnished 87 s
+// instead of 12.
 static const double KNOWING = 0.5, UNSURE = 0.1;
 
 // The way that needs least for the error.
@@ -226,7 +228,7 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     if (way.passes > 1 || isinf(way.rays)) {
         return VPL_SUCCESS;
     }
-    return endBy(r, &way, moreOut);
+    return finishWay(r, &way, moreOut);
 }
 
 // Radiosity has no passes that add up: pixels at edges are traced, or the patches are made smaller, or virtual lights take over.
@@ -252,7 +254,7 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
     if (way.finer > 0) {
         return divide(r, &way, doneOut);
     }
-    return endBy(r, &way, moreOut);
+    return finishWay(r, &way, moreOut);
 }
 
 // The least squared error for the rays that the time is enough for.

@@ -118,8 +118,8 @@ static vplWay wayOf(const vplErrorState* s, const vplEdgeStep* step, int finer, 
     return way;
 }
 
-// The cheapest way for a step after so many finer plans. It may use a share of the error that was asked for: a smaller share costs
-// more passes and paths, but fewer paths of the truth to prove it.
+// The cheapest way that traces the pixels of `step`, after the plan was made finer `finer` times. Passes and paths aim at a share of
+// the error that was asked for: a smaller share needs more of them, but fewer paths of the truth to prove the error.
 static vplWay bestWayOf(const vplErrorState* s, const vplEdgeStep* step, int finer, double asked)
 {
     static const double SHARES[] = {0.9, 0.75, 0.6, 0.45, 0.3};
