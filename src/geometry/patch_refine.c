@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Bisects the patches of the highest refinement priority.
+// Bisects the patches of the highest refinement priority, or with the longest edges.
+#include "geometry/bvh.h"
 #include "geometry/patch_tree.h"
+#include "geometry/triangle.h"
 #include "math/scalar.h"
 
 #include <string.h>
 
-// A heap of patches: the largest priority first, among equal ones the patch with the lowest index.
+// A heap of patches or nodes: the largest priority first, among equal ones the lowest index.
 typedef struct Heap {
     const float* priorities;
-    int* patches;
+    int* items;
     int count;
 } Heap;
 
@@ -19,36 +21,33 @@ static bool comesBefore(const Heap* heap, int a, int b)
 
 static void siftDown(Heap* heap, int at)
 {
-    const int patch = heap->patches[at];
+    const int item = heap->items[at];
     for (int child = 2 * at + 1; child < heap->count; child = 2 * at + 1) {
-        child += child + 1 < heap->count && comesBefore(heap, heap->patches[child + 1], heap->patches[child]);
-        if (!comesBefore(heap, heap->patches[child], patch)) {
+        child += child + 1 < heap->count && comesBefore(heap, heap->items[child + 1], heap->items[child]);
+        if (!comesBefore(heap, heap->items[child], item)) {
             break;
         }
-        heap->patches[at] = heap->patches[child];
+        heap->items[at] = heap->items[child];
         at = child;
     }
-    heap->patches[at] = patch;
+    heap->items[at] = item;
 }
 
 static int takeFirst(Heap* heap)
 {
-    const int patch = heap->patches[0];
-    heap->patches[0] = heap->patches[--heap->count];
+    const int item = heap->items[0];
+    heap->items[0] = heap->items[--heap->count];
     siftDown(heap, 0);
-    return patch;
+    return item;
 }
 
-static void fillHeap(Heap* heap, int patchCount)
+static void add(Heap* heap, int item)
 {
-    for (int i = 0; i < patchCount; i++) {
-        if (heap->priorities[i] > 0) {
-            heap->patches[heap->count++] = i;
-        }
+    int at = heap->count++;
+    for (; at > 0 && comesBefore(heap, item, heap->items[(at - 1) / 2]); at = (at - 1) / 2) {
+        heap->items[at] = heap->items[(at - 1) / 2];
     }
-    for (int i = heap->count / 2; i-- > 0;) {
-        siftDown(heap, i);
-    }
+    heap->items[at] = item;
 }
 
 static vplResult check(const vplPatches* patches, const float* priorities, int count)
@@ -85,11 +84,30 @@ static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tre
     return vplPatchTree_CopyCuts(tree, patches->cuts, patches->firstCut);
 }
 
-static void bisectFirst(const vplPatches* patches, int count, Heap* heap, vplPatchTree* tree)
+// Returns how many patches have a priority above 0; groups are left as they are.
+static int countWorthwhile(const vplPatches* patches, const float* priorities)
 {
-    for (int i = patches->patchCount; i < count && heap->count > 0;) {
-        i += vplPatchTree_Bisect(tree, patches->patches[takeFirst(heap)], 0);
+    int count = 0;
+    for (int i = 0; i < patches->patchCount - patches->groupCount; i++) {
+        count += priorities[i] > 0;
     }
+    return count;
+}
+
+static vplResult bisectFirst(const vplPatches* patches, const float* priorities, int more, vplPatchTree* tree)
+{
+    Heap heap = {.priorities = priorities};
+    heap.items = vplArena_Alloc(tree->scratch, (size_t)patches->patchCount, sizeof *heap.items);
+    TRY(vplArena_Check(tree->scratch));
+    for (int i = 0; i < patches->patchCount - patches->groupCount; i++) {
+        if (priorities[i] > 0) {
+            add(&heap, i);
+        }
+    }
+    while (more > 0 && heap.count > 0) {
+        more -= vplPatchTree_Bisect(tree, patches->patches[takeFirst(&heap)], 0);
+    }
+    return VPL_SUCCESS;
 }
 
 vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, int count,
@@ -97,18 +115,77 @@ vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, 
 {
     REQUIRE(CONTEXT_OF(patches), patches, priorities, patchesOut);
     TRY(check(patches, priorities, count));
-    Heap heap = {.priorities = priorities};
-    heap.patches = vplAlloc(patches->context, (size_t)patches->patchCount, sizeof *heap.patches);
-    if (heap.patches == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    fillHeap(&heap, patches->patchCount - patches->groupCount);
     vplPatchTree tree = {.geometry = patches->geometry};
-    const int more = vplMaxi(0, vplMini(heap.count, count - patches->patchCount));
-    const vplResult result = copyTree(patches, more, &tree);
+    const int most = countWorthwhile(patches, priorities),
+              more = vplMaxi(0, vplMini(most, count - patches->patchCount));
+    vplResult result = copyTree(patches, more, &tree);
     if (result == VPL_SUCCESS) {
-        bisectFirst(patches, count, &heap, &tree);
+        result = bisectFirst(patches, priorities, more, &tree);
     }
-    vplFree(patches->context, heap.patches);
+    return vplPatchTree_Finish(&tree, result, patchesOut);
+}
+
+// ---- the longest edge first
+
+// The length of a node's longest edge without its last six bits: edges that differ less are meant to be equal.
+static float roundedEdge(const vplPatchTree* tree, int node)
+{
+    const vplTriangleCorners at = vplCornersOf(tree->positions, tree->nodes[node].corners);
+    float length = (float)sqrt(vplPatch_SquaredEdge(&at));
+    uint32_t bits;
+    memcpy(&bits, &length, sizeof bits);
+    bits &= ~(uint32_t)63;
+    memcpy(&length, &bits, sizeof bits);
+    return length;
+}
+
+static int roundsOf(const vplPatchTree* tree, int node)
+{
+    int rounds = 0;
+    for (; node >= tree->rootCount; node = tree->nodes[node].parent) {
+        rounds++;
+    }
+    return rounds;
+}
+
+vplResult vplPatchTree_BisectLongest(vplPatchTree* tree, const uint8_t* isKept, int more, int rounds)
+{
+    const size_t nodes = (size_t)tree->nodeCount + 2 * (size_t)more;
+    float* lengths = vplArena_Alloc(tree->scratch, nodes, sizeof *lengths);
+    Heap heap = {.priorities = lengths};
+    heap.items = vplArena_Alloc(tree->scratch, nodes, sizeof *heap.items);
+    TRY(vplArena_Check(tree->scratch));
+    for (int i = 0; i < tree->nodeCount && rounds > 0; i++) {
+        if (tree->nodes[i].children < 0 && vplCanBeHit(tree->geometry, tree->nodes[i].triangle) &&
+            !(isKept != NULL && isKept[i])) {
+            lengths[i] = roundedEdge(tree, i);
+            add(&heap, i);
+        }
+    }
+    while (more > 0 && heap.count > 0) {
+        const int node = takeFirst(&heap), half = tree->nodeCount;
+        if (!vplPatchTree_Bisect(tree, node, 0)) {
+            continue;
+        }
+        more--;
+        const bool last = roundsOf(tree, half) >= rounds;
+        for (int i = half; i < half + 2 && !last; i++) {
+            lengths[i] = roundedEdge(tree, i);
+            add(&heap, i);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplPatches_BisectLongest(const vplPatches* patches, const uint8_t* isKept, int count, int rounds,
+                                   vplPatches** patchesOut)
+{
+    vplPatchTree tree = {.geometry = patches->geometry};
+    const int more = vplMaxi(0, count - patches->patchCount);
+    vplResult result = copyTree(patches, more, &tree);
+    tree.rootCount = tree.nodeCount;
+    if (result == VPL_SUCCESS) {
+        result = vplPatchTree_BisectLongest(&tree, isKept, more, rounds);
+    }
     return vplPatchTree_Finish(&tree, result, patchesOut);
 }

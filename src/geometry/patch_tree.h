@@ -72,6 +72,11 @@ vplResult vplPatchTree_CopyGroups(vplPatchTree* tree, const vplPatchGroups* grou
 // Gives a node two children if the square of its longest edge exceeds `square`. False where it stays a leaf.
 bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square);
 
+// Bisects up to `more` leaves and their halves, at most `rounds` times each: the longest edge first, of equal ones that of the
+// node with the lowest index. `isKept`: nodes that stay as they are; NULL: none. There is room for the nodes.
+// (patch_refine.c)
+vplResult vplPatchTree_BisectLongest(vplPatchTree* tree, const uint8_t* isKept, int more, int rounds);
+
 // Ends a tree: makes patches of its leaves, unless `result` is a failure on the way here, which it returns.
 vplResult vplPatchTree_Finish(vplPatchTree* tree, vplResult result, vplPatches** patchesOut);
 

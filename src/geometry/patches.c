@@ -10,6 +10,7 @@
 
 #include <limits.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { PATCH_COOKIE = 0x56504ca0 };
 
@@ -103,48 +104,6 @@ static int countAll(const Roots* roots, double square, int rounds, int enough)
     return count;
 }
 
-// ---- the longest edge for a count
-
-static double longestOf(const Roots* roots)
-{
-    double longest = 0;
-    for (int i = 0; i < roots->count; i++) {
-        vplTriangleCorners corners;
-        vplVec3 normal;
-        if (getRoot(roots, i, &corners, &normal)) {
-            const vplTriangleCorners rotated = vplPatch_Rotate(&corners);
-            longest = fmax(longest, vplPatch_SquaredEdge(&rotated));
-        }
-    }
-    return sqrt(longest);
-}
-
-// The longest T that gives `count` patches, to 2^-18 of it. Halves are never longer than their whole, so
-// bisecting the longest edge first ends in the same patches as such a T. The tolerance exceeds rounding, so
-// edges that are meant to be equal stay together. The search starts a little above the longest edge, to keep
-// the interval's ends off halves and quarters of it, which are lengths of patches.
-static double lengthFor(const Roots* roots, int count, int rounds)
-{
-    double high = longestOf(roots) * (1 + 0x1p-15), low = high;
-    const int most = countAll(roots, 0, rounds, count);
-    if (countAll(roots, INFINITY, 0, count) >= count || most == 0) {
-        return INFINITY;
-    }
-    while (countAll(roots, low * low, rounds, count) < most) {
-        high = low;
-        low *= 0.5;
-    }
-    while (high - low > low * 0x1p-18) {
-        const double middle = 0.5 * (low + high);
-        if (countAll(roots, middle * middle, rounds, count) < most) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    return low;
-}
-
 // ---- groups
 
 static int countWith(Roots* roots, double length, int rounds, int enough)
@@ -223,13 +182,6 @@ static void warnUnresolved(const Roots* roots)
     }
 }
 
-// Triangles without groups: T is chosen before they are cut.
-static vplResult chooseLength(const vplPatchDef* def, vplArena* scratch, Roots* roots, double* lengthOut)
-{
-    *lengthOut = def->size > 0 ? (double)def->size : lengthFor(roots, def->count, def->rounds);
-    return def->cut ? cut(scratch, NULL, roots) : VPL_SUCCESS;
-}
-
 // Groups and cuts triangles for a length. Returns how many patches there are in *countOut.
 static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* roots, double length,
                              int* countOut)
@@ -244,56 +196,100 @@ static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* r
 
 // Groups and cuts depend on each other: what is in a group is not cut, and what cuts add leaves fewer patches for the
 // rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight.
-static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* roots, double* lengthOut)
+static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* roots)
 {
     enum { ROUNDS = 8 };
     const int count = def->count;
     int least = 1, most = VPL_MAX_PATCHES, wanted = count, best = INT_MAX, found;
+    double nearest = 0;
     TRY(vplGroupTree_Build(scratch, roots->geometry, &roots->tree));
     if (def->size > 0) {
-        *lengthOut = (double)def->size;
-        return groupAndCut(def, scratch, roots, *lengthOut, &found);
+        return groupAndCut(def, scratch, roots, (double)def->size, &found);
     }
     for (int round = 0; round < ROUNDS && least <= most && best > count / 10; round++) {
         const double length = groupLength(roots, wanted, def->rounds);
         TRY(groupAndCut(def, scratch, roots, length, &found));
         if (abs(found - count) < best) {
             best = abs(found - count);
-            *lengthOut = length;
+            nearest = length;
         }
         least = found < count ? wanted + 1 : least;
         most = found > count ? wanted - 1 : most;
         const int next = wanted - (found - count);
         wanted = next >= least && next <= most ? next : least + (vplMini(most, 2 * wanted) - least) / 2;
     }
-    return groupAndCut(def, scratch, roots, *lengthOut, &found);
+    return groupAndCut(def, scratch, roots, nearest, &found);
 }
 
 // ---- growing
 
-static vplResult build(const Roots* roots, double length, const vplPatchDef* def, vplPatches** patchesOut)
+// How many bisections there are.
+static vplResult countBisections(const Roots* roots, const vplPatchDef* def, int* moreOut, int* cutPatchesOut)
+{
+    const int pieces = countAll(roots, INFINITY, 0, VPL_MAX_PATCHES + 1);
+    const double square = (double)def->size * (double)def->size;
+    const Roots whole = {.geometry = roots->geometry,
+                         .tree = roots->tree,
+                         .groupCount = roots->groupCount,
+                         .count = roots->geometry->triangleCount};
+    const int count = def->size > 0 ? countAll(roots, square, def->rounds, VPL_MAX_PATCHES + 1)
+                                    : vplMaxi(pieces, def->count);
+    if (count > VPL_MAX_PATCHES) {
+        return vplFail(roots->geometry->context, VPL_LIMIT,
+                       "patches with edges up to %g m are more than %d, which are allowed",
+                       (double)(def->size > 0 ? def->size : INFINITY), VPL_MAX_PATCHES);
+    }
+    *moreOut = count - pieces;
+    *cutPatchesOut = pieces - countAll(&whole, INFINITY, 0, pieces);
+    return VPL_SUCCESS;
+}
+
+static void addRoots(const Roots* roots, vplPatchTree* tree)
+{
+    if (roots->pieces.pointCount > 0) {
+        vplPatchTree_AddPieces(tree, roots->pieces.nodes, (size_t)roots->count, roots->pieces.points);
+    } else {
+        vplPatchTree_AddTriangles(tree);
+    }
+}
+
+// Marks the triangles of groups, which are not bisected. Returns NULL where there are no groups.
+static const uint8_t* markKept(const Roots* roots, vplArena* scratch)
+{
+    if (roots->groupCount == 0) {
+        return NULL;
+    }
+    uint8_t* isKept = vplArena_AllocZero(scratch, (size_t)roots->count, 1);
+    if (vplArena_Check(scratch) == VPL_SUCCESS) {
+        memcpy(isKept, vplGroupTree_IsGrouped(roots->tree), (size_t)roots->geometry->triangleCount);
+    }
+    return isKept;
+}
+
+static vplResult bisectRoots(const Roots* roots, const vplPatchDef* def, int more, vplPatchTree* tree)
+{
+    addRoots(roots, tree);
+    if (def->size > 0) {
+        grow(tree, (double)def->size * (double)def->size, def->rounds);
+        return VPL_SUCCESS;
+    }
+    const uint8_t* isKept = markKept(roots, tree->scratch);
+    TRY(vplArena_Check(tree->scratch));
+    return vplPatchTree_BisectLongest(tree, isKept, more, def->rounds);
+}
+
+static vplResult build(const Roots* roots, const vplPatchDef* def, vplPatches** patchesOut)
 {
     const vplGeometry* g = roots->geometry;
-    const double square = length * length;
-    const int count = countAll(roots, square, def->rounds, VPL_MAX_PATCHES + 1);
-    if (count > VPL_MAX_PATCHES) {
-        return vplFail(g->context, VPL_LIMIT,
-                       "patches with edges up to %g m are more than %d, which are allowed", length,
-                       VPL_MAX_PATCHES);
-    }
     const size_t triangles = (size_t)g->triangleCount, vertices = (size_t)g->vertexCount,
                  points = roots->pieces.pointCount;
     const size_t corners =
         (3 * triangles < vertices ? 3 * triangles : vertices) + (points > 0 ? points - 3 * triangles : 0);
-    const size_t more =
-        (size_t)(points > 0 ? count - countAll(roots, INFINITY, 0, count) : count); // bisections
     vplPatchTree tree = {.geometry = g, .unresolvedCuts = roots->pieces.unresolved};
-    if (points > 0) {
-        const Roots whole = {
-            .geometry = g, .tree = roots->tree, .groupCount = roots->groupCount, .count = g->triangleCount};
-        tree.cutPatches = count - countAll(&whole, square, def->rounds, count);
-    }
-    vplResult result = vplPatchTree_Reserve(&tree, corners + more, (size_t)roots->count + 2 * more);
+    int more = 0;
+    TRY(countBisections(roots, def, &more, &tree.cutPatches));
+    vplResult result =
+        vplPatchTree_Reserve(&tree, corners + (size_t)more, (size_t)roots->count + 2 * (size_t)more);
     if (result == VPL_SUCCESS && points > 0) {
         result = vplPatchTree_CopyCuts(&tree, roots->segments.list, roots->segments.first);
     }
@@ -301,12 +297,7 @@ static vplResult build(const Roots* roots, double length, const vplPatchDef* def
         result = vplGroupTree_List(roots->tree, tree.arena, &tree.groups);
     }
     if (result == VPL_SUCCESS) {
-        if (points > 0) {
-            vplPatchTree_AddPieces(&tree, roots->pieces.nodes, (size_t)roots->count, roots->pieces.points);
-        } else {
-            vplPatchTree_AddTriangles(&tree);
-        }
-        grow(&tree, square, def->rounds);
+        result = bisectRoots(roots, def, more, &tree);
     }
     return vplPatchTree_Finish(&tree, result, patchesOut);
 }
@@ -316,12 +307,13 @@ vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def,
     REQUIRE(CONTEXT_OF(geometry), geometry, def, patchesOut);
     TRY(checkDef(geometry, def));
     Roots roots = {.geometry = geometry, .count = geometry->triangleCount};
-    double length = 0;
     vplArena* scratch = def->cut || def->group ? vplArena_Create(geometry->context) : NULL;
-    vplResult result = (def->group ? chooseGroups : chooseLength)(def, scratch, &roots, &length);
+    vplResult result = def->group ? chooseGroups(def, scratch, &roots)
+                       : def->cut ? cut(scratch, NULL, &roots)
+                                  : VPL_SUCCESS;
     if (result == VPL_SUCCESS) {
         warnUnresolved(&roots);
-        result = build(&roots, length, def, patchesOut);
+        result = build(&roots, def, patchesOut);
     }
     vplArena_Destroy(scratch);
     return result;

@@ -73,4 +73,9 @@ static inline int vplPatches_TriangleOf(const vplPatches* patches, int patch)
     return patches->nodes[patches->patches[patch]].triangle;
 }
 
+// Bisects patches until there are `count`, as vplPatches_Create does, each at most `rounds` times. `isKept`: nodes that stay
+// as they are; NULL: none. The old patches stay. (patch_refine.c)
+vplResult vplPatches_BisectLongest(const vplPatches* patches, const uint8_t* isKept, int count, int rounds,
+                                   vplPatches** patchesOut);
+
 #endif

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-static vplResult bisect(const vplRun* run, int count, vplPatches** patchesOut)
+static vplResult create(const vplRun* run, int count, vplPatches** patchesOut)
 {
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
     vplPatchDef def = vplDefaultPatchDef();
@@ -18,6 +18,53 @@ static vplResult bisect(const vplRun* run, int count, vplPatches** patchesOut)
     def.cut = o->cuts == VPL_PATCH_CUTS_ON;
     def.group = o->groups == VPL_PATCH_GROUPS_ON;
     return vplPatches_Create(run->results[VPL_STAGE_GEOMETRY], &def, patchesOut);
+}
+
+// ---- patches in the dark
+//
+// Cuts leave many pieces inside walls. They take no part, so they are not among the patches that a user asks for, and
+// are not bisected.
+
+// Marks the nodes of patches that light does not reach. Returns how many there are.
+static vplResult markDark(const vplRun* run, const vplPatches* patches, uint8_t* isDark, int* countOut)
+{
+    vplRun draft = *run;
+    draft.results[VPL_STAGE_PATCHES] = patches;
+    void* made;
+    TRY(vplMakeSides(&draft, &made));
+    const vplPatchSides* sides = made;
+    *countOut = 0;
+    for (int i = 0; i < patches->patchCount; i++) {
+        isDark[patches->patches[i]] = sides->ofPatch[2 * i] < 0 && sides->ofPatch[2 * i + 1] < 0;
+        *countOut += isDark[patches->patches[i]];
+    }
+    vplDestroySides(made);
+    return VPL_SUCCESS;
+}
+
+static vplResult bisectLit(const vplRun* run, int count, const vplPatches* pieces, vplPatches** patchesOut,
+                           int* darkOut)
+{
+    uint8_t* isDark = vplArena_AllocZero(run->scratch, (size_t)pieces->nodeCount, 1);
+    TRY(vplArena_Check(run->scratch));
+    TRY(markDark(run, pieces, isDark, darkOut));
+    const int most = VPL_MAX_PATCHES - *darkOut, rounds = run->plan->options.radiosity.subdivisions;
+    return vplPatches_BisectLongest(pieces, isDark, *darkOut + (count < most ? count : most), rounds, patchesOut);
+}
+
+// Makes `count` patches, and *darkOut more that light does not reach.
+static vplResult bisect(const vplRun* run, int count, vplPatches** patchesOut, int* darkOut)
+{
+    const vplRadiosityOptions* o = &run->plan->options.radiosity;
+    *darkOut = 0;
+    if (o->cuts != VPL_PATCH_CUTS_ON || o->groups == VPL_PATCH_GROUPS_ON || o->patchSize > 0) {
+        return create(run, count, patchesOut);
+    }
+    vplPatches* pieces;
+    TRY(create(run, 1, &pieces));
+    const vplResult result = bisectLit(run, count, pieces, patchesOut, darkOut);
+    vplPatches_Destroy(pieces);
+    return result;
 }
 
 // ---- adaptive patches
@@ -112,14 +159,14 @@ static vplResult adapt(const vplRun* run, vplPatches** patchesOut)
     const int asked = run->plan->options.radiosity.patches;
     double count = asked * ADAPTIVE_START;
     vplPatches* patches;
-    TRY(bisect(run, count >= 1 ? (int)count : 1, &patches));
-    const int cuts = patches->cutPatches; // may be inside walls
-    const int wanted = cuts < VPL_MAX_PATCHES - asked ? asked + cuts : VPL_MAX_PATCHES;
+    int dark;
+    TRY(bisect(run, count >= 1 ? (int)count : 1, &patches, &dark));
+    const int wanted = dark < VPL_MAX_PATCHES - asked ? asked + dark : VPL_MAX_PATCHES;
     for (int round = 0; patches->patchCount < wanted; round++) {
         vplRun_BeginPart(run, round < ADAPTIVE_ROUNDS ? round : ADAPTIVE_ROUNDS - 1, ADAPTIVE_ROUNDS);
         const int before = patches->patchCount;
         vplPatches* finer = NULL;
-        count = (before - cuts) * ADAPTIVE_GROWTH + 1 + cuts;
+        count = (before - dark) * ADAPTIVE_GROWTH + 1 + dark;
         const vplResult result = runDraft(run, patches, count < wanted ? (int)count : wanted, &finer);
         vplPatches_Destroy(patches);
         if (result != VPL_SUCCESS) {
@@ -138,7 +185,8 @@ vplResult vplMakePatches(const vplRun* run, void** resultOut)
 {
     vplPatches* patches;
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
-    TRY(o->placement == VPL_PATCHES_ADAPTIVE ? adapt(run, &patches) : bisect(run, o->patches, &patches));
+    int dark;
+    TRY(o->placement == VPL_PATCHES_ADAPTIVE ? adapt(run, &patches) : bisect(run, o->patches, &patches, &dark));
     *resultOut = patches;
     return VPL_SUCCESS;
 }
