@@ -85,13 +85,17 @@ TEST(EveryTriangleIsInOnePatch, 1)
     vplGeometry_Destroy(g);
 }
 
-// The number of patches is the one asked for within 20 %, from what normals alone demand to a quarter of the triangles:
-// nearer to their number, that of triangles of one size jumps.
+// The number of patches is the one asked for within 20 %, from what normals alone demand to a quarter of the triangles, and from
+// their number on: between them, that of triangles of one size jumps.
 TEST(TheCountHolds, 1)
 {
     vplGeometry* g[2] = {buildGeometry(ballRoom(context, 12, 3, 0.5f, 0)), clutter(context, 1)};
     for (int which = 0; which < 2; which++) {
-        for (int count = 100; count < g[which]->triangleCount / 4; count += count / 3) {
+        const int triangles = g[which]->triangleCount;
+        for (int count = 100; count < 4 * triangles; count += count / 3) {
+            if (count > triangles / 4 && count < triangles) {
+                continue;
+            }
             vplPatches* p = groupsOf(g[which], count, 0, true);
             if (abs(p->patchCount - count) > count / 5) {
                 fail_msg("%d patches instead of %d (scene %d)", p->patchCount, count, which);
@@ -100,6 +104,41 @@ TEST(TheCountHolds, 1)
         }
         vplGeometry_Destroy(g[which]);
     }
+}
+
+// So many patches are lit as --patches asks for, with groups or without, where cuts leave most pieces inside walls, too.
+static void expectLit(vplScene* scene, int count, bool grouped)
+{
+    vplRenderOptions o = radiosityOptions(count);
+    vplRenderStats stats;
+    o.output.width = o.output.height = 8;
+    o.radiosity.gather = 0;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    const int made = stats.patchGroups > 0 ? stats.patches : stats.litPatches;
+    printf("# %d patches are %d, %d of them lit, %d groups\n", count, stats.patches, stats.litPatches,
+           stats.patchGroups);
+    assert_true(made >= count - count / 5 && made <= count + count / 5);
+    assert_true((stats.patchGroups > 0) == grouped);
+    assert_true(stats.litPatches <= stats.patches && stats.litPatches <= stats.patchSides);
+}
+
+TEST(PatchesThatLightReachesAreCounted, 2, SLOW)
+{
+    static const char* const NAMES[] = {"room", "thin-boxes", "six-rooms", "flat", "loft"};
+    for (int i = 0; i < 5; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "examples/scenes/%s.json", NAMES[i]);
+        vplScene* scene = openScene(context, path);
+        expectLit(scene, 600, i == 4);
+        expectLit(scene, 2000, false);
+        vplScene_Destroy(scene);
+    }
+    vplScene* balls = ballRoom(context, 12, 2, 0.5f, 0);
+    addEmitter(balls, VPL_EMITTER_POINT, vplVec(0, 0.9f, 0), vplVec(0, -1, 0), 1);
+    aim(balls, vplVec(0, 0, 0.95f), vplVec(0, 0, 0));
+    expectLit(balls, 3000, true);
+    expectLit(balls, 3900, false);
+    vplScene_Destroy(balls);
 }
 
 // Groups for a length T fit into boxes of that diagonal, and their normals are near the mean. Emitters have their own.

@@ -395,31 +395,52 @@ static vplPatches* byCount(const vplGeometry* g, int count)
     return p;
 }
 
-// A count is met once all edges of the same length, up to rounding, are bisected: bisecting one length less
-// gives too few patches, and the patches are those of a threshold.
-TEST(ACountBisectsTheLongestFirstAllOfALengthTogether, 1)
+static double longestOf(const vplPatches* p, int node)
+{
+    double longest = 0;
+    for (int k = 0; k < 3; k++) {
+        const vplVec3 a = p->positions[p->nodes[node].corners[k]],
+                      b = p->positions[p->nodes[node].corners[(k + 1) % 3]];
+        longest = fmax(longest, (double)vplLength(vplSub(a, b)));
+    }
+    return longest;
+}
+
+// No patch has a longer edge than one that was bisected. At most 5 % of the bisections are added so that equal patches stay so:
+// 770 become 784, but 465 and 600 divide patches of one length.
+TEST(ACountBisectsTheLongestFirst, 1)
 {
     vplGeometry* lab = testModel(context, MODEL_LAB, 0.5f);
     vplGeometry* metres = testModel(context, MODEL_METRES, 0.5f);
-    static const int counts[] = {1, 30, 31, 464, 465, 784, 785, 5000};
-    for (int i = 0; i < 8; i++) {
+    static const int counts[] = {1, 30, 31, 450, 464, 465, 600, 770, 784, 785, 5000};
+    static const int wanted[] = {30, 30, 31, 452, 464, 465, 600, 784, 784, 788, 5000};
+    for (int i = 0; i < 11; i++) {
         vplPatches *p = byCount(lab, counts[i]), *q = byCount(metres, counts[i]);
-        assert_true(p->patchCount >= counts[i]);
-        assert_int_equal(q->patchCount, p->patchCount);
-        assert_int_equal(countOf(lab, p->longestEdge, VPL_MAX_PATCH_ROUNDS), p->patchCount);
-        if (counts[i] > 30) { // one length less
-            const float more = nextafterf(p->longestEdge, INFINITY);
-            int fewer = p->patchCount;
-            for (float size = more; fewer == p->patchCount; size *= 1.0005f) {
-                fewer = countOf(lab, size, VPL_MAX_PATCH_ROUNDS);
-            }
-            assert_true(fewer < counts[i]);
+        assertNear(p->patchCount, wanted[i], 0, "patches", counts[i]);
+        assertNear(q->patchCount, p->patchCount, 0, "patches in metres", counts[i]);
+        for (int n = 0; n < p->nodeCount; n++) {
+            const double length = longestOf(p, n);
+            assert_true(p->nodes[n].children >= 0 ? length >= (double)p->longestEdge * (1 - 0x1p-16)
+                                                  : length <= (double)p->longestEdge);
         }
         vplPatches_Destroy(p);
         vplPatches_Destroy(q);
     }
     vplGeometry_Destroy(lab);
     vplGeometry_Destroy(metres);
+}
+
+TEST(ACountObeysTheRounds, 1)
+{
+    vplGeometry* lab = testModel(context, MODEL_LAB, 0.5f);
+    vplPatchDef def = vplDefaultPatchDef();
+    def.count = 5000;
+    def.rounds = 2;
+    vplPatches* p;
+    assert_int_equal(vplPatches_Create(lab, &def, &p), VPL_SUCCESS);
+    assert_int_equal(p->patchCount, 4 * lab->triangleCount);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(lab);
 }
 
 // ---- refining

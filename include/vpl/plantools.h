@@ -107,11 +107,11 @@ struct vplPlan {
     int64_t drawCalls;     // per pass
     int passes;            // that the options ask for; 0: a time or an error ends them
     int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
-    int patches, patchSides;
-    int patchGroups, groupedTriangles; // patches that are groups of triangles, and the triangles in them
-    double longestEdge;                // longest edge of a patch, metres
-    bool linked;                       // patches exchange light by links between groups
-    int64_t formFactorBytes;           // form factors of all pairs
+    int patches, litPatches, patchSides; // litPatches: that light reaches on some side
+    int patchGroups, groupedTriangles;   // patches that are groups of triangles, and the triangles in them
+    double longestEdge;                  // longest edge of a patch, metres
+    bool linked;                         // patches exchange light by links between groups
+    int64_t formFactorBytes;             // form factors of all pairs
     int64_t shadowMapBytes, lightBytes, pictureBytes, layerBytes;
     int64_t peakBytes; // most memory that rendering holds at a time, within 15 %
     // Estimated costs of shadow maps and rays, by which the shadows of virtual lights were chosen, ms on one

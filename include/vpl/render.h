@@ -61,7 +61,8 @@ typedef struct vplRenderStats {
     // points than its lights; by test rays, after clusters were split. Negative: not measured.
     double clusterDisagreement;
 
-    int patches, patchSides;           // radiosity: patches, and sides of them that light reaches
+    int patches, litPatches,
+        patchSides; // radiosity: patches, those that light reaches, and their sides that it reaches
     int patchGroups, groupedTriangles; // radiosity: patches that are groups, and the triangles in them
     bool linked;                       // radiosity: light was exchanged by links
     int64_t formFactors;               // radiosity: pairs of sides, or links

@@ -56,8 +56,8 @@ int bakeScene(const Arguments* a, vplScene* scene)
     int code = exitCode(vplBake(scene, &options, (float)a->exposure, a->output, &stats), false);
     endProgress(&progress);
     if (code == EXIT_DONE && a->verbose) {
-        complain("%d patches, %d sides that light reaches, %d sweeps", stats.patches, stats.patchSides,
-                 stats.solve.iterations);
+        complain("%d patches, light reaches %d of them on %d sides, %d sweeps", stats.patches,
+                 stats.litPatches, stats.patchSides, stats.solve.iterations);
     }
     if (code == EXIT_DONE && a->stats != NULL) {
         code = writeStats(vplScene_GetContext(scene), a->stats, &stats);

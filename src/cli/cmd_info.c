@@ -139,7 +139,7 @@ static json_t* planJson(const vplPlan* p)
                                         "why", s->why, "bytes", (json_int_t)s->bytes, "ms", s->ms));
     }
     return json_pack("{s:s, s:s, s:i, s:i, s:f, s:i, s:o, s:I, s:I, s:I, s:I, s:I, s:i, s:i, s:I, s:I, s:o, "
-                     "s:o, s:o, s:f, s:f, s:f, s:b, s:s?}",
+                     "s:o, s:o, s:f, s:f, s:f, s:b, s:s?, s:i}",
                      "method", method, "pipeline", pipeline, "width", o->output.width, "height",
                      o->output.height, "reflectivity", o->particles.reflectivity, "steps", p->stepCount,
                      "lights_per_step", integersJson(p->particlesPerStep, steps), "virtual_lights",
@@ -151,7 +151,7 @@ static json_t* planJson(const vplPlan* p)
                      decisionsJson(p->decisions, p->decisionCount), "left_out",
                      decisionsJson(p->leftOut, p->leftOutCount), "predicted_ms", p->predictedMs, "first_ms",
                      p->firstMs, "pass_ms", p->passMs, "usual_speeds", p->usualSpeeds, "problem",
-                     p->problem[0] != 0 ? p->problem : NULL);
+                     p->problem[0] != 0 ? p->problem : NULL, "lit_patches", p->litPatches);
 }
 
 static json_t* sceneJson(const Info* info)

@@ -9,6 +9,7 @@ static void addRadiosity(json_t* root, const vplRenderStats* stats)
         return;
     }
     const vplSolveStats* s = &stats->solve;
+    json_object_set_new(root, "lit_patches", json_integer(stats->litPatches));
     json_object_set_new(root, "patch_sides", json_integer(stats->patchSides));
     if (stats->patchGroups > 0) {
         json_object_set_new(root, "patch_groups", json_integer(stats->patchGroups));

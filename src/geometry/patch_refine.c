@@ -7,16 +7,23 @@
 
 #include <string.h>
 
-// A heap of patches or nodes: the largest priority first, among equal ones the lowest index.
+// A heap of patches or nodes: the largest priority first, among equal ones the largest area, then the lowest index.
 typedef struct Heap {
     const float* priorities;
+    const float* areas; // NULL: all equal
     int* items;
     int count;
 } Heap;
 
 static bool comesBefore(const Heap* heap, int a, int b)
 {
-    return heap->priorities[a] > heap->priorities[b] || (heap->priorities[a] == heap->priorities[b] && a < b);
+    if (heap->priorities[a] != heap->priorities[b]) {
+        return heap->priorities[a] > heap->priorities[b];
+    }
+    if (heap->areas != NULL && heap->areas[a] != heap->areas[b]) {
+        return heap->areas[a] > heap->areas[b];
+    }
+    return a < b;
 }
 
 static void siftDown(Heap* heap, int at)
@@ -127,16 +134,16 @@ vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, 
 
 // ---- the longest edge first
 
-// The length of a node's longest edge without its last six bits: edges that differ less are meant to be equal.
-static float roundedEdge(const vplPatchTree* tree, int node)
+// A number without its last six bits: lengths and areas that differ less are meant to be equal.
+static float rounded(double number)
 {
-    const vplTriangleCorners at = vplCornersOf(tree->positions, tree->nodes[node].corners);
-    float length = (float)sqrt(vplPatch_SquaredEdge(&at));
+    const float value = (float)number;
     uint32_t bits;
-    memcpy(&bits, &length, sizeof bits);
+    memcpy(&bits, &value, sizeof bits);
     bits &= ~(uint32_t)63;
-    memcpy(&length, &bits, sizeof bits);
-    return length;
+    float result;
+    memcpy(&result, &bits, sizeof result);
+    return result;
 }
 
 static int roundsOf(const vplPatchTree* tree, int node)
@@ -148,31 +155,64 @@ static int roundsOf(const vplPatchTree* tree, int node)
     return rounds;
 }
 
+static void addNode(const vplPatchTree* tree, int node, float* lengths, float* areas, Heap* heap)
+{
+    const vplTriangleCorners at = vplCornersOf(tree->positions, tree->nodes[node].corners);
+    lengths[node] = rounded(sqrt(vplPatch_SquaredEdge(&at)));
+    areas[node] = rounded(vplTriangle_Area(&at));
+    add(heap, node);
+}
+
+static bool bisect(vplPatchTree* tree, int node, int rounds, float* lengths, float* areas, Heap* heap)
+{
+    const int half = tree->nodeCount;
+    if (!vplPatchTree_Bisect(tree, node, 0)) {
+        return false;
+    }
+    const bool last = roundsOf(tree, half) >= rounds;
+    for (int i = half; i < half + 2 && !last; i++) {
+        addNode(tree, i, lengths, areas, heap);
+    }
+    return true;
+}
+
+// Returns how many nodes are as long and as large as the first.
+static int countEqual(const Heap* heap)
+{
+    int count = 0;
+    for (int i = 0; i < heap->count; i++) {
+        const int first = heap->items[0], other = heap->items[i];
+        count +=
+            heap->priorities[other] == heap->priorities[first] && heap->areas[other] == heap->areas[first];
+    }
+    return count;
+}
+
 vplResult vplPatchTree_BisectLongest(vplPatchTree* tree, const uint8_t* isKept, int more, int rounds)
 {
-    const size_t nodes = (size_t)tree->nodeCount + 2 * (size_t)more;
+    const size_t nodes = (size_t)tree->nodeCount + 2 * ((size_t)more + (size_t)vplSparePatches(more));
     float* lengths = vplArena_Alloc(tree->scratch, nodes, sizeof *lengths);
-    Heap heap = {.priorities = lengths};
+    float* areas = vplArena_Alloc(tree->scratch, nodes, sizeof *areas);
+    Heap heap = {.priorities = lengths, .areas = areas};
     heap.items = vplArena_Alloc(tree->scratch, nodes, sizeof *heap.items);
     TRY(vplArena_Check(tree->scratch));
     for (int i = 0; i < tree->nodeCount && rounds > 0; i++) {
         if (tree->nodes[i].children < 0 && vplCanBeHit(tree->geometry, tree->nodes[i].triangle) &&
             !(isKept != NULL && isKept[i])) {
-            lengths[i] = roundedEdge(tree, i);
-            add(&heap, i);
+            addNode(tree, i, lengths, areas, &heap);
         }
     }
+    const int spare = vplSparePatches(more);
+    int equal = 0;
     while (more > 0 && heap.count > 0) {
-        const int node = takeFirst(&heap), half = tree->nodeCount;
-        if (!vplPatchTree_Bisect(tree, node, 0)) {
-            continue;
-        }
-        more--;
-        const bool last = roundsOf(tree, half) >= rounds;
-        for (int i = half; i < half + 2 && !last; i++) {
-            lengths[i] = roundedEdge(tree, i);
-            add(&heap, i);
-        }
+        const float length = lengths[heap.items[0]], area = areas[heap.items[0]];
+        more -= bisect(tree, takeFirst(&heap), rounds, lengths, areas, &heap);
+        const bool divides =
+            more == 0 && heap.count > 0 && lengths[heap.items[0]] == length && areas[heap.items[0]] == area;
+        equal = divides ? countEqual(&heap) : 0;
+    }
+    for (int i = 0; i < equal && equal <= spare; i++) {
+        bisect(tree, takeFirst(&heap), rounds, lengths, areas, &heap);
     }
     return VPL_SUCCESS;
 }
@@ -182,7 +222,7 @@ vplResult vplPatches_BisectLongest(const vplPatches* patches, const uint8_t* isK
 {
     vplPatchTree tree = {.geometry = patches->geometry};
     const int more = vplMaxi(0, count - patches->patchCount);
-    vplResult result = copyTree(patches, more, &tree);
+    vplResult result = copyTree(patches, more + vplSparePatches(more), &tree);
     tree.rootCount = tree.nodeCount;
     if (result == VPL_SUCCESS) {
         result = vplPatchTree_BisectLongest(&tree, isKept, more, rounds);

@@ -72,8 +72,15 @@ vplResult vplPatchTree_CopyGroups(vplPatchTree* tree, const vplPatchGroups* grou
 // Gives a node two children if the square of its longest edge exceeds `square`. False where it stays a leaf.
 bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square);
 
-// Bisects up to `more` leaves and their halves, at most `rounds` times each: the longest edge first, of equal ones that of the
-// node with the lowest index. `isKept`: nodes that stay as they are; NULL: none. There is room for the nodes.
+// How many more bisections than asked for are made so that patches of one length and area stay alike.
+static inline int vplSparePatches(int more)
+{
+    return more / 20;
+}
+
+// Bisects `more` leaves and their halves, at most `rounds` times each: the longest edge first, of equal ones that of the
+// largest area, then of the lowest index. Where this would divide some of the leaves of one length and area, it divides the
+// others, too, if they are at most vplSparePatches. There is room for all. `isKept`: nodes that stay as they are; NULL: none.
 // (patch_refine.c)
 vplResult vplPatchTree_BisectLongest(vplPatchTree* tree, const uint8_t* isKept, int more, int rounds);
 

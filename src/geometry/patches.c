@@ -288,8 +288,8 @@ static vplResult build(const Roots* roots, const vplPatchDef* def, vplPatches** 
     vplPatchTree tree = {.geometry = g, .unresolvedCuts = roots->pieces.unresolved};
     int more = 0;
     TRY(countBisections(roots, def, &more, &tree.cutPatches));
-    vplResult result =
-        vplPatchTree_Reserve(&tree, corners + (size_t)more, (size_t)roots->count + 2 * (size_t)more);
+    const size_t most = (size_t)more + (size_t)vplSparePatches(more);
+    vplResult result = vplPatchTree_Reserve(&tree, corners + most, (size_t)roots->count + 2 * most);
     if (result == VPL_SUCCESS && points > 0) {
         result = vplPatchTree_CopyCuts(&tree, roots->segments.list, roots->segments.first);
     }

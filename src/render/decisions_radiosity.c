@@ -4,6 +4,7 @@
 
 #include "geometry/triangle.h"
 #include "radiosity/factors/form_factors.h"
+#include "radiosity/sides/side.h"
 #include "render/show.h"
 #include "render/stages/results.h"
 
@@ -22,21 +23,55 @@ static void chooseCuts(vplPlan* p)
     }
 }
 
-// Decides whether small triangles share patches, before patches are made.
-static void chooseGroups(const vplRunner* r, vplPlan* p)
+// Makes patches and finds those that light reaches.
+static vplResult countPatches(vplRunner* r, vplPlan* p)
+{
+    TRY(vplRunner_RunStage(r, VPL_STAGE_PATCHES));
+    TRY(vplRunner_RunStage(r, VPL_STAGE_SIDES));
+    const vplPatches* patches = r->run.results[VPL_STAGE_PATCHES];
+    const vplPatchSides* sides = r->run.results[VPL_STAGE_SIDES];
+    p->patches = patches->patchCount;
+    p->litPatches = vplPatchSides_CountPatches(sides);
+    p->longestEdge = (double)patches->longestEdge;
+    p->patchGroups = patches->groupCount;
+    p->groupedTriangles = vplPatches_CountGrouped(patches);
+    p->patchSides = sides->count;
+    return VPL_SUCCESS;
+}
+
+static bool arePatchesMade(const vplPlan* p)
+{
+    return p->options.radiosity.placement == VPL_PATCHES_UNIFORM && p->showsPatches;
+}
+
+// Decides whether small triangles share patches, before patches are made: where there are more triangles, or pieces of them
+// that light reaches, than patches are asked for, to a tenth.
+static vplResult chooseGroups(vplRunner* r, vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const bool fixed = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
-    if (o->groups == VPL_PATCH_GROUPS_AUTO) {
-        const bool many = g->triangleCount > o->patches;
-        o->groups = many && !fixed ? VPL_PATCH_GROUPS_ON : VPL_PATCH_GROUPS_OFF;
-        vplDecide(p, "patch-groups",
-                  !many   ? "no more triangles than patches"
-                  : fixed ? "other options ask for a patch per triangle"
-                          : "%d triangles for %d patches",
-                  g->triangleCount, o->patches);
+    if (o->groups != VPL_PATCH_GROUPS_AUTO) {
+        return VPL_SUCCESS;
     }
+    o->groups = VPL_PATCH_GROUPS_OFF;
+    if (o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0) {
+        vplDecide(p, "patch-groups", "other options ask for a patch per triangle");
+        return VPL_SUCCESS;
+    }
+    const bool many = g->triangleCount > o->patches;
+    if (!many && o->cuts == VPL_PATCH_CUTS_ON && arePatchesMade(p)) {
+        TRY(countPatches(r, p));
+    }
+    const bool manyPieces = p->litPatches > o->patches + o->patches / 10;
+    if (many || manyPieces) {
+        o->groups = VPL_PATCH_GROUPS_ON;
+    }
+    vplDecide(p, "patch-groups",
+              many         ? "%d triangles for %d patches"
+              : manyPieces ? "cuts leave pieces of %d triangles, more than %d patches"
+                           : "no more triangles than patches",
+              g->triangleCount, o->patches);
+    return VPL_SUCCESS;
 }
 
 // Decides whether patches exchange light in groups.
@@ -48,16 +83,8 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
                                                        : VPL_ALL_PAIRS;
     p->patches = o->patches;
     p->patchSides = o->patches; // in rooms, which light fills from one side
-    if (o->placement == VPL_PATCHES_UNIFORM && p->showsPatches) {
-        TRY(vplRunner_RunStage(r, VPL_STAGE_PATCHES));
-        TRY(vplRunner_RunStage(r, VPL_STAGE_SIDES));
-        const vplPatches* patches = r->run.results[VPL_STAGE_PATCHES];
-        const vplPatchSides* sides = r->run.results[VPL_STAGE_SIDES];
-        p->patches = patches->patchCount;
-        p->longestEdge = (double)patches->longestEdge;
-        p->patchGroups = patches->groupCount;
-        p->groupedTriangles = vplPatches_CountGrouped(patches);
-        p->patchSides = sides->count;
+    if (arePatchesMade(p)) {
+        TRY(countPatches(r, p));
     }
     p->linked = p->patchSides > p->linkAbove;
     p->formFactorBytes = (int64_t)vplEstimateFactors(r, p).held;
@@ -125,7 +152,7 @@ static void chooseRadiosity(vplPlan* p)
 vplResult vplDecidePatches(vplRunner* r, vplPlan* p)
 {
     chooseCuts(p);
-    chooseGroups(r, p);
+    TRY(chooseGroups(r, p));
     TRY(chooseLinks(r, p));
     chooseGather(p);
     chooseRadiosity(p);

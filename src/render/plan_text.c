@@ -58,6 +58,10 @@ static void putCounts(Text* t, const vplPlan* p)
             putRow(t, "groups");
             put(t, "%d of the patches are groups of %d triangles", p->patchGroups, p->groupedTriangles);
         }
+        if (p->litPatches > 0) {
+            putRow(t, "lit patches");
+            put(t, "%d", p->litPatches);
+        }
         putRow(t, "sides");
         put(t, "%d of %d that light reaches", p->patchSides, 2 * p->patches);
         if (!p->linked) {

@@ -36,7 +36,7 @@ check ExplainOfLightsIsOnStderr grep -q '^stages' "$scratch/stderr"
 "$vpl" info "$room" --json >"$scratch/info"
 for key in cameras materials objects meshes lights paths first_frame last_frame triangles lamp_triangles lamp_area bounds_min \
     bounds_max diagonal area mean_reflectance render method pipeline width height reflectivity steps lights_per_step \
-    virtual_lights draw_calls shadow_map_bytes light_bytes picture_bytes patches patch_sides form_factor_bytes \
+    virtual_lights draw_calls shadow_map_bytes light_bytes picture_bytes patches lit_patches patch_sides form_factor_bytes \
     peak_bytes stages decisions left_out problem; do
     check "InfoJsonHas_$key" grep -q "\"$key\": " "$scratch/info"
 done

@@ -16,7 +16,7 @@ done
 for words in "--patches 100" "--patches 100 --antialias 3" "--patches 100 --hierarchy on" "--patch-size 1"; do
     succeeds "Radiosity: $words" "$vpl" render "$room" $tiny $words -o "$out/a.pfm" --stats "$s"
     succeeds "Info: radiosity $words" "$vpl" info "$room" --method radiosity --shadow-map 16 $words --json
-    for key in patches patch_sides draw_calls triangles; do
+    for key in patches lit_patches patch_sides draw_calls triangles; do
         equals "InfoForetells_$key: $words" "$(field "$s" $key)" "$(field "$scratch/stdout" $key)"
     done
 done
@@ -26,6 +26,7 @@ for key in iterations residual spectral_radius form_factor_sums links; do
 done
 succeeds InfoOfRadiosity "$vpl" info "$room" --method radiosity --patches 100
 check InfoHasPatches grep -qE '^ +patches +[0-9]+, edges up to [0-9.]+ m$' "$scratch/stdout"
+check InfoHasLitPatches grep -qE '^ +lit patches +[0-9]+$' "$scratch/stdout"
 check InfoHasSides grep -qE '^ +sides +[0-9]+ of [0-9]+ that light reaches$' "$scratch/stdout"
 check InfoHasFormFactors grep -qE '^ +form factors +[0-9.]+ KiB$' "$scratch/stdout"
 # Groups are named where there are some, and as many as foretold.

@@ -20,6 +20,16 @@ static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
     return sides->ofPatch[2 * (size_t)patch + (size_t)face];
 }
 
+// The patches that light reaches on some side.
+static inline int vplPatchSides_CountPatches(const vplPatchSides* sides)
+{
+    int count = 0;
+    for (int i = 0; i < sides->count; i++) {
+        count += i == 0 || sides->sides[i].patch != sides->sides[i - 1].patch;
+    }
+    return count;
+}
+
 // The corners of a node, counter-clockwise seen from one of its sides.
 void vplPatchNode_GetCorners(const vplPatches* patches, int node, bool back, vplVec3 cornersOut[3]);
 

@@ -2,6 +2,7 @@
 // The stages that prepare radiosity: patches, uniform or adaptive, the sides of patches that light can reach,
 // the mesh of patches, and form factors of all pairs or links.
 #include "geometry/triangle.h"
+#include "radiosity/sides/side.h"
 #include "render/runner.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -32,12 +33,10 @@ static vplResult markDark(const vplRun* run, const vplPatches* patches, uint8_t*
     draft.results[VPL_STAGE_PATCHES] = patches;
     void* made;
     TRY(vplMakeSides(&draft, &made));
-    const vplPatchSides* sides = made;
-    *countOut = 0;
     for (int i = 0; i < patches->patchCount; i++) {
-        isDark[patches->patches[i]] = sides->ofPatch[2 * i] < 0 && sides->ofPatch[2 * i + 1] < 0;
-        *countOut += isDark[patches->patches[i]];
+        isDark[patches->patches[i]] = vplSideOf(made, i, 0) < 0 && vplSideOf(made, i, 1) < 0;
     }
+    *countOut = patches->patchCount - vplPatchSides_CountPatches(made);
     vplDestroySides(made);
     return VPL_SUCCESS;
 }
@@ -49,7 +48,8 @@ static vplResult bisectLit(const vplRun* run, int count, const vplPatches* piece
     TRY(vplArena_Check(run->scratch));
     TRY(markDark(run, pieces, isDark, darkOut));
     const int most = VPL_MAX_PATCHES - *darkOut, rounds = run->plan->options.radiosity.subdivisions;
-    return vplPatches_BisectLongest(pieces, isDark, *darkOut + (count < most ? count : most), rounds, patchesOut);
+    return vplPatches_BisectLongest(pieces, isDark, *darkOut + (count < most ? count : most), rounds,
+                                    patchesOut);
 }
 
 // Makes `count` patches, and *darkOut more that light does not reach.
@@ -186,7 +186,8 @@ vplResult vplMakePatches(const vplRun* run, void** resultOut)
     vplPatches* patches;
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
     int dark;
-    TRY(o->placement == VPL_PATCHES_ADAPTIVE ? adapt(run, &patches) : bisect(run, o->patches, &patches, &dark));
+    TRY(o->placement == VPL_PATCHES_ADAPTIVE ? adapt(run, &patches)
+                                             : bisect(run, o->patches, &patches, &dark));
     *resultOut = patches;
     return VPL_SUCCESS;
 }
@@ -278,6 +279,7 @@ void vplReportSides(const vplRun* run)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     run->stats->patchSides = sides->count;
+    run->stats->litPatches = vplPatchSides_CountPatches(sides);
 }
 
 vplResult vplMakePatchMesh(const vplRun* run, void** resultOut)
