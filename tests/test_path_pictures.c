@@ -391,6 +391,8 @@ TEST(ObjectsInOnePlaneAreOneSurface, 2)
         options.output.height = 30;
         options.path.samples = 8;
         options.particles.count = 60;
+        options.radiosity.patchSize = 0.4f; // a number of patches would be shared by both surfaces
+        options.radiosity.cuts = VPL_PATCH_CUTS_ON;
         vplImage *a = renderScene(plain, &options, NULL),
                  *b = renderScene(m < 3 ? twice : rugs, &options, NULL);
         vplComparison c;

@@ -67,7 +67,7 @@ TEST(AdaptivePatchesAreBetterThanMoreUniformOnes, 2, SLOW)
     int patches[2];
     for (int adaptive = 0; adaptive < 2; adaptive++) {
         vplRenderStats stats;
-        o = radiosityOptions(1000);
+        o = radiosityOptions(adaptive ? 1000 : 1624);
         o.radiosity.placement = adaptive ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
         o.output.show = VPL_SHOW_INDIRECT;
         vplImage* image = renderScene(scene, &o, &stats);

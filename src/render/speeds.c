@@ -130,10 +130,10 @@ static const Load LOADS[VPL_SPEED_COUNT] = {
      {"method", "keller", "particles", "40", "light-shadows", "ray", "compensation", "none", "size",
       "96x54"}},
     {15.5, VPL_STAGE_PATHS, true, {"method", "path", "spp", "2", "size", "64x36"}},
-    {8.6,
+    {14.1,
      VPL_STAGE_FORM_FACTORS,
      false,
-     {"method", "radiosity", "patches", "300", "shadow-map", "16", "size", "16x16"}},
+     {"method", "radiosity", "patches", "200", "shadow-map", "16", "size", "16x16"}},
 };
 
 enum { ROUNDS = 5, PARALLEL = 5 }; // PARALLEL: the load that all threads render, too

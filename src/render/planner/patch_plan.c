@@ -9,10 +9,10 @@
 #include <math.h>
 
 enum {
-    FEWEST = 300,         // patches
+    FEWEST = 450,         // patches
     FEW_TRIANGLES = 40,   // of a scene that patches suit
     FEW_EMITTERS = 16,    // each takes a shadow ray per pixel and side
-    PIXELS_PER_PATCH = 15 // in smaller pictures a pass of virtual lights is cheaper
+    PIXELS_PER_PATCH = 10 // in smaller pictures a pass of virtual lights is cheaper
 };
 
 // The error that FEWEST patches usually leave beside edges; it falls with the root of their number.
