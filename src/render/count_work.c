@@ -260,12 +260,15 @@ static vplWork workOf(const Scale* s, vplStageId id)
     case VPL_STAGE_SECOND_PARABOLOIDS:
         addParaboloids(o->ssvp.secondBounce, s, &w);
         break;
+    case VPL_STAGE_PATCHES: // the pieces in the dark are sought before patches are made
+        w.counts[PATH_RAY] = 90.0 * (p->patchGroups > 0 ? 0 : p->patches - p->litPatches) * s->pathDepth;
+        break;
     case VPL_STAGE_SIDES:
-        w.counts[PATH_RAY] = 90.0 * p->patches * s->pathDepth;
+        w.counts[PATH_RAY] = (p->patchGroups > 0 ? 250.0 : 90.0) * p->patches * s->pathDepth;
         break;
     case VPL_STAGE_FORM_FACTORS: // groups have more samples, and no shaft finds what may be in the way
         w.counts[FORM_FACTOR] = p->linked
-                                    ? 20000 * s->sides
+                                    ? (p->patchGroups > 0 ? 30000 : 20000) * s->sides
                                     : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) *
                                                             s->depth * (p->patchGroups > 0 ? 3 : 1);
         break;
@@ -275,7 +278,7 @@ static vplWork workOf(const Scale* s, vplStageId id)
                                s->depth;
         break;
     case VPL_STAGE_SOLUTION: // about 20 sweeps
-        w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.55 * pairs;
+        w.counts[FORM_FACTOR] = p->linked ? 2000 * s->sides : 0.55 * pairs;
         break;
     case VPL_STAGE_VERTEX_LIGHT: // 64 rays from every tenth vertex or so, which the camera sees
         w.counts[PATH_RAY] = 8.0 * p->groupedTriangles * s->pathDepth;
