@@ -168,7 +168,7 @@ TEST(AWallThatIsThereTwiceIsLitAsOnce, 1)
         {"--method keller --particles 20 --compensation none --min-distance 0.1 --light-shadows ray", 1e-5},
         {"--method keller --particles 20 --compensation none --min-distance 0.1 --light-shadows map", 1e-5},
         {"--method ssvp --min-distance 0.1", 2e-3}, // by which lights are chosen, too
-        {"--method radiosity --light-shadows ray", 2e-3}};
+        {"--method radiosity --patch-size 0.2 --patch-cuts on --light-shadows ray", 2e-3}};
     const vplMat4 turn =
         vplMat4_FromParts((vplVec3){3, 1, 2}, (double[3]){0.3, 0.5, 0.7}, (vplVec3){1, 1, 1});
     for (int m = 0; m < (int)(sizeof cases / sizeof *cases); m++) {

@@ -390,7 +390,7 @@ TEST(SmallSidesSeeForThemselves, 2, SLOW)
     Room room;
     const vplLinkDef def = vplDefaultLinkDef();
     const vplFormFactorDef all = vplDefaultFormFactorDef();
-    openRoom(&room, boxInRoom(context), 5000);
+    openRoom(&room, boxInRoom(context), 6656);
     linkRoom(&room, &def);
     assert_int_equal(vplFormFactors_Create(room.sides, &all, &room.factors), VPL_SUCCESS);
     vplRgb* b = calloc((size_t)room.sides->count, sizeof *b);

@@ -224,6 +224,19 @@ static vplResult renderRadiosity(Attempt* a)
     return renderFrames(a, options, 2);
 }
 
+// More triangles than patches, so that they are in groups. Variants: all pairs and light gathered at vertices, links and a
+// final gather, adaptive patches.
+static vplResult renderGroups(Attempt* a)
+{
+    vplRenderOptions options = radiosityOptions();
+    options.radiosity.hierarchy = a->variant == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
+    options.radiosity.placement = a->variant == 2 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
+    options.radiosity.gather = a->variant == 1 ? 2 : 0;
+    options.radiosity.patches = 30;
+    TRY(vplScene_Load(a->context, "tests/data/room.json", &a->scene));
+    return renderFrames(a, options, 1);
+}
+
 // Variants: solvers.
 static vplResult bake(Attempt* a)
 {
@@ -464,6 +477,7 @@ EVERY_FAILED_ALLOCATION(AShownStage, showStage, "pfm", VPL_SHOW_OVERLAY - VPL_SH
 EVERY_FAILED_ALLOCATION(Ssvp, renderSsvp, "png", 2)
 EVERY_FAILED_ALLOCATION(Frames, renderSequence, "png", 1)
 EVERY_FAILED_ALLOCATION(Radiosity, renderRadiosity, "png", 3)
+EVERY_FAILED_ALLOCATION(GroupsOfTriangles, renderGroups, "png", 3)
 EVERY_FAILED_ALLOCATION(ABake, bake, "ply", 2)
 EVERY_FAILED_ALLOCATION(APlacement, placeLights, "png", 2)
 EVERY_FAILED_ALLOCATION(Clusters, findClusters, "png", 2)

@@ -118,7 +118,7 @@ TEST(TJunctionsAreNotSeen, 2)
 TEST(CutsWorkWithIncentres, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/sunken-boxes.json");
-    vplRenderOptions o = radiosityOptions(600);
+    vplRenderOptions o = radiosityOptions(920);
     o.radiosity.formFactors = VPL_FORM_FACTORS_INCENTRE;
     o.radiosity.rowSums = VPL_ROW_SUMS_CLAMP;
     o.radiosity.cuts = VPL_PATCH_CUTS_ON;

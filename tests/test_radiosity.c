@@ -278,7 +278,7 @@ TEST(NothingIsDarkBecauseItTouchesABox, 2, SLOW)
     aim(scene, vplVec(0, 0.95f, 0.01f), vplVec(0, -1, 0)); // straight down
     addEmitter(scene, VPL_EMITTER_POINT, vplVec(0, 0.6f, 0), vplVec(0, -1, 0), 3);
     vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 512);
-    vplRenderOptions o = radiosityOptions(150);
+    vplRenderOptions o = radiosityOptions(204);
     double least[2];
     for (int equal = 0; equal < 2; equal++) {
         o.radiosity.vertexWeight = equal ? VPL_VERTEX_WEIGHT_EQUAL : VPL_VERTEX_WEIGHT_ANGLE;

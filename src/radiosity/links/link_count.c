@@ -10,7 +10,9 @@
 #include <math.h>
 
 enum {
-    MOST = 1 << 13, // pairs of one level: with 1 << 10 the estimate differs by up to 3 times from seed to seed in large scenes
+    MOST =
+        1
+        << 13, // pairs of one level: with 1 << 10 the estimate differs by up to 3 times from seed to seed in large scenes
     STREAM = 0x4d80 // of random numbers
 };
 
