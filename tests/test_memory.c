@@ -205,23 +205,26 @@ static vplRenderOptions radiosityOptions(void)
 {
     vplRenderOptions options = optionsOf(VPL_METHOD_RADIOSITY, 8, 0);
     options.radiosity.patches = 16;
+    options.radiosity.cuts = VPL_PATCH_CUTS_OFF;
     options.radiosity.iterations = 2;
     options.radiosity.lightSamples = options.radiosity.formSamples = 1;
     return options;
 }
 
-// Variants: all pairs, links, and adaptive patches.
+// Variants: all pairs, links, adaptive patches, and cuts, which look for pieces in the dark.
 static vplResult renderRadiosity(Attempt* a)
 {
     vplRenderOptions options = radiosityOptions();
     options.radiosity.hierarchy = a->variant == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
     options.radiosity.placement = a->variant == 2 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
     options.radiosity.patches = a->variant == 2 ? 20 : 16; // fewer patches are not refined
+    options.radiosity.cuts = a->variant == 3 ? VPL_PATCH_CUTS_ON : VPL_PATCH_CUTS_OFF;
+    options.radiosity.groups = a->variant == 3 ? VPL_PATCH_GROUPS_OFF : VPL_PATCH_GROUPS_AUTO;
     vplPlan* plan;
     TRY(vplScene_Load(a->context, "tests/data/corner-path.json", &a->scene));
     TRY(vplPlan_Create(a->scene, &options, NULL, &plan)); // finds a sample of links
     vplPlan_Destroy(plan);
-    return renderFrames(a, options, 2);
+    return renderFrames(a, options, a->variant == 3 ? 1 : 2);
 }
 
 // More triangles than patches, so that they are in groups. Variants: all pairs and light gathered at vertices, links and a
@@ -232,6 +235,7 @@ static vplResult renderGroups(Attempt* a)
     options.radiosity.hierarchy = a->variant == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
     options.radiosity.placement = a->variant == 2 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
     options.radiosity.gather = a->variant == 1 ? 2 : 0;
+    options.radiosity.cuts = VPL_PATCH_CUTS_ON;
     options.radiosity.patches = 30;
     TRY(vplScene_Load(a->context, "tests/data/room.json", &a->scene));
     return renderFrames(a, options, 1);
@@ -476,7 +480,7 @@ EVERY_FAILED_ALLOCATION(Lightcuts, renderCuts, "png", 2)
 EVERY_FAILED_ALLOCATION(AShownStage, showStage, "pfm", VPL_SHOW_OVERLAY - VPL_SHOW_DEPTH + 1)
 EVERY_FAILED_ALLOCATION(Ssvp, renderSsvp, "png", 2)
 EVERY_FAILED_ALLOCATION(Frames, renderSequence, "png", 1)
-EVERY_FAILED_ALLOCATION(Radiosity, renderRadiosity, "png", 3)
+EVERY_FAILED_ALLOCATION(Radiosity, renderRadiosity, "png", 4)
 EVERY_FAILED_ALLOCATION(GroupsOfTriangles, renderGroups, "png", 3)
 EVERY_FAILED_ALLOCATION(ABake, bake, "ply", 2)
 EVERY_FAILED_ALLOCATION(APlacement, placeLights, "png", 2)
