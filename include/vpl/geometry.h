@@ -297,8 +297,8 @@ typedef struct vplPatchDef {
     // of that edge. 0 (default): T is chosen for `count`.
     float size;
     // As many patches as this, [1, VPL_MAX_PATCHES]; default 1000. Used where size is 0. The patch with the longest edge is
-    // bisected first, of equally long ones that with the largest area; numbers that differ by less than 2^-17 are equal, and
-    // up to 5 % more are bisected so that equal patches stay so. There are never fewer patches than triangles, or than what
+    // bisected first, of equally long ones that with the largest area; numbers are equal that are so in 12 bits, and up to 5 %
+    // more are bisected so that equal patches stay so. There are never fewer patches than triangles, or than what
     // cuts leave of them, unless `group` is set.
     int count;
     int rounds; // of bisection at most, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS

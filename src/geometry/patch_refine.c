@@ -134,13 +134,14 @@ vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, 
 
 // ---- the longest edge first
 
-// A number without its last six bits: lengths and areas that differ less are meant to be equal.
+// A number rounded to 12 bits: lengths and areas that differ less are meant to be equal, and which of them is larger must not
+// depend on where the scene is.
 static float rounded(double number)
 {
     const float value = (float)number;
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
-    bits &= ~(uint32_t)63;
+    bits = (bits + 0x800) & ~(uint32_t)0xfff;
     float result;
     memcpy(&result, &bits, sizeof result);
     return result;
