@@ -106,7 +106,8 @@ TEST(TheCountHolds, 1)
     }
 }
 
-// So many patches are lit as --patches asks for, with groups or without, where cuts leave most pieces inside walls, too.
+// Light reaches as many patches as --patches asks for, within 20 %, even where most pieces of triangles are inside walls. With
+// groups all patches count.
 static void expectLit(vplScene* scene, int count, bool grouped)
 {
     vplRenderOptions o = radiosityOptions(count);

@@ -296,18 +296,18 @@ typedef struct vplPatchDef {
     // T, metres, >= 0: each round bisects every triangle whose longest edge is longer than T, at the middle
     // of that edge. 0 (default): T is chosen for `count`.
     float size;
-    // As many patches as this, [1, VPL_MAX_PATCHES]; default 1000. Used where size is 0. The patch with the longest edge is
-    // bisected first, of equally long ones that with the largest area; numbers are equal that are so in 12 bits, and up to 5 %
-    // more are bisected so that equal patches stay so. There are never fewer patches than triangles, or than what
-    // cuts leave of them, unless `group` is set.
+    // The number of patches, [1, VPL_MAX_PATCHES]; default 1000. Used where size is 0. The patch with the longest edge is
+    // bisected first; of equally long ones, the one with the largest area. Lengths and areas are compared after rounding to 12
+    // bits. Up to 5 % more bisections are made if then all equal patches are bisected. Without `group` there is at least one
+    // patch per triangle, or per piece of a triangle that cuts divide.
     int count;
     int rounds; // of bisection at most, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
     // Cut triangles where other surfaces cross, touch or overlap them, before they are bisected, so that no patch
     // lies on both sides of a wall, or half under a box; default false.
     bool cut;
     // Make one patch of many small triangles: of those in a box whose diagonal is at most T, which face the same way and
-    // emit the same; default false. With `size` 0, T is chosen so that there are about `count` patches, at most that many where
-    // possible, and bisection makes up the rest. Only triangles that are in no group are cut, and by each other.
+    // emit the same; default false. With `size` 0, T is chosen so that there are about `count` patches; if there are fewer,
+    // patches that are no groups are bisected further. Only triangles that are in no group are cut, and by each other.
     bool group;
     uint32_t cookie; // set by vplDefaultPatchDef
 } vplPatchDef;
@@ -361,7 +361,6 @@ typedef struct vplPatches {
     // vplPatchDef.cut is false.
     const vplPatchCut* cuts;
     const int* firstCut;
-    int cutPatches;         // how many more pieces than triangles cuts leave
     int unresolvedCuts;     // along which some patch still spans what cuts it, because no float lies between
     struct vplArena* arena; // owns the arrays
     vplContext* context;

@@ -107,7 +107,7 @@ struct vplPlan {
     int64_t drawCalls;     // per pass
     int passes;            // that the options ask for; 0: a time or an error ends them
     int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
-    int patches, litPatches, patchSides; // litPatches: that light reaches on some side
+    int patches, litPatches, patchSides; // litPatches: those that light reaches
     int patchGroups, groupedTriangles;   // patches that are groups of triangles, and the triangles in them
     double longestEdge;                  // longest edge of a patch, metres
     bool linked;                         // patches exchange light by links between groups

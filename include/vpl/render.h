@@ -62,7 +62,7 @@ typedef struct vplRenderStats {
     double clusterDisagreement;
 
     int patches, litPatches,
-        patchSides; // radiosity: patches, those that light reaches, and their sides that it reaches
+        patchSides; // radiosity: patches; those that light reaches; their sides that it reaches
     int patchGroups, groupedTriangles; // radiosity: patches that are groups, and the triangles in them
     bool linked;                       // radiosity: light was exchanged by links
     int64_t formFactors;               // radiosity: pairs of sides, or links

@@ -80,7 +80,6 @@ static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tre
     }
     memcpy(tree->nodes, patches->nodes, nodes * sizeof *tree->nodes);
     tree->nodeCount = patches->nodeCount;
-    tree->cutPatches = patches->cutPatches;
     tree->unresolvedCuts = patches->unresolvedCuts;
     for (size_t i = 0; i < nodes; i++) {
         tree->nodes[i].patch = -1;
@@ -89,16 +88,6 @@ static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tre
                                    patches->areaUpTo};
     TRY(vplPatchTree_CopyGroups(tree, &groups));
     return vplPatchTree_CopyCuts(tree, patches->cuts, patches->firstCut);
-}
-
-// Returns how many patches have a priority above 0; groups are left as they are.
-static int countWorthwhile(const vplPatches* patches, const float* priorities)
-{
-    int count = 0;
-    for (int i = 0; i < patches->patchCount - patches->groupCount; i++) {
-        count += priorities[i] > 0;
-    }
-    return count;
 }
 
 static vplResult bisectFirst(const vplPatches* patches, const float* priorities, int more, vplPatchTree* tree)
@@ -123,8 +112,7 @@ vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, 
     REQUIRE(CONTEXT_OF(patches), patches, priorities, patchesOut);
     TRY(check(patches, priorities, count));
     vplPatchTree tree = {.geometry = patches->geometry};
-    const int most = countWorthwhile(patches, priorities),
-              more = vplMaxi(0, vplMini(most, count - patches->patchCount));
+    const int more = vplMaxi(0, vplMini(patches->patchCount, count - patches->patchCount));
     vplResult result = copyTree(patches, more, &tree);
     if (result == VPL_SUCCESS) {
         result = bisectFirst(patches, priorities, more, &tree);
@@ -156,64 +144,70 @@ static int roundsOf(const vplPatchTree* tree, int node)
     return rounds;
 }
 
-static void addNode(const vplPatchTree* tree, int node, float* lengths, float* areas, Heap* heap)
+// A tree whose longest leaves are bisected first. Lengths and areas are those of nodes, rounded.
+typedef struct Longest {
+    vplPatchTree* tree;
+    float *lengths, *areas;
+    Heap heap; // of leaves that may be bisected
+    int rounds;
+} Longest;
+
+static void addNode(Longest* l, int node)
 {
-    const vplTriangleCorners at = vplCornersOf(tree->positions, tree->nodes[node].corners);
-    lengths[node] = rounded(sqrt(vplPatch_SquaredEdge(&at)));
-    areas[node] = rounded(vplTriangle_Area(&at));
-    add(heap, node);
+    const vplTriangleCorners at = vplCornersOf(l->tree->positions, l->tree->nodes[node].corners);
+    l->lengths[node] = rounded(sqrt(vplPatch_SquaredEdge(&at)));
+    l->areas[node] = rounded(vplTriangle_Area(&at));
+    add(&l->heap, node);
 }
 
-static bool bisect(vplPatchTree* tree, int node, int rounds, float* lengths, float* areas, Heap* heap)
+// Bisects the first leaf. False where it has no middle.
+static bool bisectNext(Longest* l)
 {
-    const int half = tree->nodeCount;
-    if (!vplPatchTree_Bisect(tree, node, 0)) {
+    const int node = takeFirst(&l->heap), half = l->tree->nodeCount;
+    if (!vplPatchTree_Bisect(l->tree, node, 0)) {
         return false;
     }
-    const bool last = roundsOf(tree, half) >= rounds;
+    const bool last = roundsOf(l->tree, half) >= l->rounds;
     for (int i = half; i < half + 2 && !last; i++) {
-        addNode(tree, i, lengths, areas, heap);
+        addNode(l, i);
     }
     return true;
 }
 
-// Returns how many nodes are as long and as large as the first.
-static int countEqual(const Heap* heap)
+static int countEqual(const Longest* l, float length, float area)
 {
     int count = 0;
-    for (int i = 0; i < heap->count; i++) {
-        const int first = heap->items[0], other = heap->items[i];
-        count +=
-            heap->priorities[other] == heap->priorities[first] && heap->areas[other] == heap->areas[first];
+    for (int i = 0; i < l->heap.count; i++) {
+        const int node = l->heap.items[i];
+        count += l->lengths[node] == length && l->areas[node] == area;
     }
     return count;
 }
 
 vplResult vplPatchTree_BisectLongest(vplPatchTree* tree, const uint8_t* isKept, int more, int rounds)
 {
-    const size_t nodes = (size_t)tree->nodeCount + 2 * ((size_t)more + (size_t)vplSparePatches(more));
-    float* lengths = vplArena_Alloc(tree->scratch, nodes, sizeof *lengths);
-    float* areas = vplArena_Alloc(tree->scratch, nodes, sizeof *areas);
-    Heap heap = {.priorities = lengths, .areas = areas};
-    heap.items = vplArena_Alloc(tree->scratch, nodes, sizeof *heap.items);
+    const int spare = vplSparePatches(more);
+    const size_t nodes = (size_t)tree->nodeCount + 2 * ((size_t)more + (size_t)spare);
+    Longest l = {.tree = tree, .rounds = rounds};
+    l.heap.priorities = l.lengths = vplArena_Alloc(tree->scratch, nodes, sizeof *l.lengths);
+    l.heap.areas = l.areas = vplArena_Alloc(tree->scratch, nodes, sizeof *l.areas);
+    l.heap.items = vplArena_Alloc(tree->scratch, nodes, sizeof *l.heap.items);
     TRY(vplArena_Check(tree->scratch));
     for (int i = 0; i < tree->nodeCount && rounds > 0; i++) {
         if (tree->nodes[i].children < 0 && vplCanBeHit(tree->geometry, tree->nodes[i].triangle) &&
             !(isKept != NULL && isKept[i])) {
-            addNode(tree, i, lengths, areas, &heap);
+            addNode(&l, i);
         }
     }
-    const int spare = vplSparePatches(more);
-    int equal = 0;
-    while (more > 0 && heap.count > 0) {
-        const float length = lengths[heap.items[0]], area = areas[heap.items[0]];
-        more -= bisect(tree, takeFirst(&heap), rounds, lengths, areas, &heap);
-        const bool divides =
-            more == 0 && heap.count > 0 && lengths[heap.items[0]] == length && areas[heap.items[0]] == area;
-        equal = divides ? countEqual(&heap) : 0;
+    float length = 0, area = 0; // of the last leaf that was bisected
+    while (more > 0 && l.heap.count > 0) {
+        length = l.lengths[l.heap.items[0]];
+        area = l.areas[l.heap.items[0]];
+        more -= bisectNext(&l);
     }
+    const int equal = countEqual(&l, length, area);
     for (int i = 0; i < equal && equal <= spare; i++) {
-        bisect(tree, takeFirst(&heap), rounds, lengths, areas, &heap);
+        bisectNext(&l);
     }
     return VPL_SUCCESS;
 }

@@ -19,7 +19,7 @@ typedef struct vplPatchTree {
     // As in vplPatches; owned by the arena.
     const vplPatchCut* cuts;
     const int* firstCut;
-    int cutPatches, unresolvedCuts;
+    int unresolvedCuts;
     vplPatchGroups groups;
 } vplPatchTree;
 
@@ -78,9 +78,9 @@ static inline int vplSparePatches(int more)
     return more / 20;
 }
 
-// Bisects `more` leaves and their halves, at most `rounds` times each: the longest edge first, of equal ones that of the
-// largest area, then of the lowest index. Where this would divide some of the leaves of one length and area, it divides the
-// others, too, if they are at most vplSparePatches. There is room for all. `isKept`: nodes that stay as they are; NULL: none.
+// Bisects the leaf with the longest edge, `more` times, each triangle at most `rounds` times. Of equally long leaves the one with
+// the largest area is first, then the one with the lowest index. If leaves are left that equal the last one and are at most
+// vplSparePatches, they are bisected, too. There is room for all. `isKept`: nodes that are not bisected; NULL: none.
 // (patch_refine.c)
 vplResult vplPatchTree_BisectLongest(vplPatchTree* tree, const uint8_t* isKept, int more, int rounds);
 

@@ -223,15 +223,11 @@ static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* 
 
 // ---- growing
 
-// How many bisections there are.
-static vplResult countBisections(const Roots* roots, const vplPatchDef* def, int* moreOut, int* cutPatchesOut)
+// Finds how many bisections the definition asks for. Refuses too many patches.
+static vplResult countBisections(const Roots* roots, const vplPatchDef* def, int* moreOut)
 {
     const int pieces = countAll(roots, INFINITY, 0, VPL_MAX_PATCHES + 1);
     const double square = (double)def->size * (double)def->size;
-    const Roots whole = {.geometry = roots->geometry,
-                         .tree = roots->tree,
-                         .groupCount = roots->groupCount,
-                         .count = roots->geometry->triangleCount};
     const int count = def->size > 0 ? countAll(roots, square, def->rounds, VPL_MAX_PATCHES + 1)
                                     : vplMaxi(pieces, def->count);
     if (pieces > VPL_MAX_PATCHES) {
@@ -244,7 +240,6 @@ static vplResult countBisections(const Roots* roots, const vplPatchDef* def, int
                        VPL_MAX_PATCHES);
     }
     *moreOut = count - pieces;
-    *cutPatchesOut = pieces - countAll(&whole, INFINITY, 0, pieces);
     return VPL_SUCCESS;
 }
 
@@ -291,7 +286,7 @@ static vplResult build(const Roots* roots, const vplPatchDef* def, vplPatches** 
         (3 * triangles < vertices ? 3 * triangles : vertices) + (points > 0 ? points - 3 * triangles : 0);
     vplPatchTree tree = {.geometry = g, .unresolvedCuts = roots->pieces.unresolved};
     int more = 0;
-    TRY(countBisections(roots, def, &more, &tree.cutPatches));
+    TRY(countBisections(roots, def, &more));
     const size_t most = (size_t)more + (size_t)vplSparePatches(more);
     vplResult result = vplPatchTree_Reserve(&tree, corners + most, (size_t)roots->count + 2 * most);
     if (result == VPL_SUCCESS && points > 0) {

@@ -44,8 +44,8 @@ static bool arePatchesMade(const vplPlan* p)
     return p->options.radiosity.placement == VPL_PATCHES_UNIFORM && p->showsPatches;
 }
 
-// Decides whether small triangles share patches, before patches are made: where there are more triangles, or pieces of them
-// that light reaches, than patches are asked for, to a tenth.
+// Decides whether small triangles share patches, before patches are made: they do where there are more triangles than --patches
+// asks for, or where light reaches over 10 % more pieces of triangles than that.
 static vplResult chooseGroups(vplRunner* r, vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;

@@ -318,7 +318,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "method lighting show show-index compensation min-distance particles grow-from PASS",
         needsVirtualLights, vplMakeVirtualLights, NULL, .report = vplReportVirtualLights},
     [VPL_STAGE_PATCHES] = {
-        "patches", 0.05, IN(GEOMETRY), 
+        "patches", 0.05, IN(GEOMETRY),
         "patch-size patches subdivisions patch-placement patch-cuts patch-groups form-factors camera seed ADAPTIVE",
         needsPatches, vplMakePatches, vplDestroyPatches, .report = vplReportPatches},
     [VPL_STAGE_SIDES] = {

@@ -10,9 +10,8 @@
 #include <math.h>
 
 enum {
-    MOST =
-        1
-        << 13, // pairs of one level: with 1 << 10 the estimate differs by up to 3 times from seed to seed in large scenes
+    // Pairs of one level. With 1 << 10 the estimate differs by up to 3 times from seed to seed in large scenes.
+    MOST = 1 << 13,
     STREAM = 0x4d80 // of random numbers
 };
 
