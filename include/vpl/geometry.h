@@ -361,6 +361,7 @@ typedef struct vplPatches {
     // vplPatchDef.cut is false.
     const vplPatchCut* cuts;
     const int* firstCut;
+    int cutPatches;         // how many more pieces than triangles cuts leave
     int unresolvedCuts;     // along which some patch still spans what cuts it, because no float lies between
     struct vplArena* arena; // owns the arrays
     vplContext* context;

@@ -80,6 +80,7 @@ static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tre
     }
     memcpy(tree->nodes, patches->nodes, nodes * sizeof *tree->nodes);
     tree->nodeCount = patches->nodeCount;
+    tree->cutPatches = patches->cutPatches;
     tree->unresolvedCuts = patches->unresolvedCuts;
     for (size_t i = 0; i < nodes; i++) {
         tree->nodes[i].patch = -1;

@@ -282,6 +282,7 @@ static vplResult makePatches(vplPatchTree* tree, vplPatches** patchesOut)
                             .patches = list,
                             .cuts = tree->cuts,
                             .firstCut = tree->firstCut,
+                            .cutPatches = tree->cutPatches,
                             .unresolvedCuts = tree->unresolvedCuts,
                             .arena = tree->arena,
                             .context = tree->geometry->context};

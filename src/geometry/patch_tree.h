@@ -19,7 +19,7 @@ typedef struct vplPatchTree {
     // As in vplPatches; owned by the arena.
     const vplPatchCut* cuts;
     const int* firstCut;
-    int unresolvedCuts;
+    int cutPatches, unresolvedCuts;
     vplPatchGroups groups;
 } vplPatchTree;
 

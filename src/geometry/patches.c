@@ -224,7 +224,7 @@ static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* 
 // ---- growing
 
 // Finds how many bisections the definition asks for. Refuses too many patches.
-static vplResult countBisections(const Roots* roots, const vplPatchDef* def, int* moreOut)
+static vplResult countBisections(const Roots* roots, const vplPatchDef* def, int* moreOut, int* cutPatchesOut)
 {
     const int pieces = countAll(roots, INFINITY, 0, VPL_MAX_PATCHES + 1);
     const double square = (double)def->size * (double)def->size;
@@ -239,7 +239,12 @@ static vplResult countBisections(const Roots* roots, const vplPatchDef* def, int
                        "patches with edges up to %g m are more than %d, which are allowed", (double)def->size,
                        VPL_MAX_PATCHES);
     }
+    const Roots whole = {.geometry = roots->geometry,
+                         .tree = roots->tree,
+                         .groupCount = roots->groupCount,
+                         .count = roots->geometry->triangleCount};
     *moreOut = count - pieces;
+    *cutPatchesOut = pieces - countAll(&whole, INFINITY, 0, pieces);
     return VPL_SUCCESS;
 }
 
@@ -286,7 +291,7 @@ static vplResult build(const Roots* roots, const vplPatchDef* def, vplPatches** 
         (3 * triangles < vertices ? 3 * triangles : vertices) + (points > 0 ? points - 3 * triangles : 0);
     vplPatchTree tree = {.geometry = g, .unresolvedCuts = roots->pieces.unresolved};
     int more = 0;
-    TRY(countBisections(roots, def, &more));
+    TRY(countBisections(roots, def, &more, &tree.cutPatches));
     const size_t most = (size_t)more + (size_t)vplSparePatches(more);
     vplResult result = vplPatchTree_Reserve(&tree, corners + most, (size_t)roots->count + 2 * most);
     if (result == VPL_SUCCESS && points > 0) {
