@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Runs all tests; `vpl-tests NAME` runs the suite NAME (the tests of test_NAME.c) and the tests whose names
 // contain NAME, `vpl-tests -memory -Host` all but the suite memory and the tests whose names contain Host.
-// --quick leaves out slow tests, --times prints the processor time of each. Ends with "N passed, N failed".
+// --quick leaves out slow tests, --odd and --even take every second test, so that two processes share them, --times prints the
+// processor time of each. Ends with "N passed, N failed".
 #include "test.h"
 
 #include <stdlib.h>
@@ -103,13 +104,17 @@ static size_t runTimed(const char* suite, const struct CMUnitTest* tests, size_t
 int main(int count, char** words)
 {
     const bool timed = takeOption(&count, words, "--times"), quick = takeOption(&count, words, "--quick");
+    const bool odd = takeOption(&count, words, "--odd"), even = takeOption(&count, words, "--even");
+    int chosen = 0;
     struct CMUnitTest* wanted = malloc((size_t)testCount * sizeof *wanted);
     size_t passed = 0, failed = 0;
     for (Test* test = first; test != NULL;) {
         const Test* head = test;
         size_t n = 0;
         for (; test != NULL && strcmp(test->file, head->file) == 0; test = test->next) {
-            if (isWanted(count, words, test) && !(quick && test->slow)) {
+            const bool isChosen = isWanted(count, words, test) && !(quick && test->slow);
+            chosen += isChosen;
+            if (isChosen && !(chosen % 2 == 1 ? even : odd)) {
                 wanted[n++] = (struct CMUnitTest){test->name, runTest, NULL, NULL, test};
             }
         }

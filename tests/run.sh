@@ -1,12 +1,13 @@
 #!/bin/sh
 # Runs every test of a built configuration: tests/run.sh BUILD. Ends with "N passed, N failed".
-# Programs and scripts that count by themselves end with such a line, too; their counts are added up.
+# Programs and scripts that count by themselves end with such a line, too; their counts are added up. Two halves run side by
+# side, because most tests use one processor.
 build=${1:-build}
 export OMP_WAIT_POLICY=passive # threads that spin while they wait take ten times the processor time of small tests
 passed=0
 failed=0
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
+all=$(mktemp -d)
+trap 'rm -rf "$all"' EXIT
 
 # count NAME COMMAND...: runs something that ends with "N passed, N failed".
 count() {
@@ -41,26 +42,49 @@ one() {
     fi
 }
 
-count "unit tests" "$build/vpl-tests"
-if [ -e "$build/nulls" ]; then
-    count "wrong arguments" "$build/nulls"
-else
-    echo "wrong arguments: skipped, need python3"
-fi
-count "golden pictures" "$build/vpl-golden" check golden "$build/golden"
-count "program" tests/cli/run.sh "$build/vpl"
-count "interrupts" tests/signals.sh "$build/vpl" 20
-count "project" tests/project.sh "$build"
-for replay in "$build"/fuzz/*_replay; do
-    kind=$(basename "$replay" _replay)
-    one "corpus of $kind" "$replay" "tests/fuzz/corpus/$kind"
-done
-if [ -x "$build/vpl-mpi.openmpi" ] && [ -x "$build/vpl-mpi.mpich" ]; then
-    echo "vpl-mpi: make test-mpi tests it"
-else
-    echo "skipped: vpl-mpi needs two MPIs; make test-mpi installs them and tests it"
-fi
-one "random renders" "$build/soak" 300
+# half NAME: one of the two; leaves what it counted in a file.
+half() {
+    scratch=$all/$1
+    mkdir "$scratch"
+    "$1"
+    echo "$passed $failed" >"$scratch/counts"
+}
 
+units_and_pictures() {
+    count "unit tests, odd" "$build/vpl-tests" --odd
+    if [ -e "$build/nulls" ]; then
+        count "wrong arguments" "$build/nulls"
+    else
+        echo "wrong arguments: skipped, need python3"
+    fi
+    count "golden pictures" "$build/vpl-golden" check golden "$build/golden"
+    count "interrupts" tests/signals.sh "$build/vpl" 20
+    count "project" tests/project.sh "$build"
+}
+
+units_and_program() {
+    count "unit tests, even" "$build/vpl-tests" --even
+    count "program" tests/cli/run.sh "$build/vpl"
+    for replay in "$build"/fuzz/*_replay; do
+        kind=$(basename "$replay" _replay)
+        one "corpus of $kind" "$replay" "tests/fuzz/corpus/$kind"
+    done
+    if [ -x "$build/vpl-mpi.openmpi" ] && [ -x "$build/vpl-mpi.mpich" ]; then
+        echo "vpl-mpi: make test-mpi tests it"
+    else
+        echo "skipped: vpl-mpi needs two MPIs; make test-mpi installs them and tests it"
+    fi
+    one "random renders" "$build/soak" 300
+}
+
+half units_and_program &
+half units_and_pictures &
+wait
+for name in units_and_program units_and_pictures; do
+    good=0 bad=1 # it died before it could count
+    [ -e "$all/$name/counts" ] && read -r good bad <"$all/$name/counts"
+    passed=$((passed + good))
+    failed=$((failed + bad))
+done
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

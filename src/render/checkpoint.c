@@ -56,7 +56,8 @@ static vplStateHeader describe(const vplRenderer* r, const vplByteBuffer* text)
                         .side = (uint64_t)r->turn.side,
                         .edges = {(uint32_t)r->edgePixels, (uint32_t)r->edgePaths},
                         .tries = (uint64_t)r->edgeTries,
-                        .coarser = r->coarserSquare};
+                        .coarser = r->coarserSquare,
+                        .lights = r->lightRays};
     for (int i = 0; i < vplState_CountTracers(parts); i++) {
         vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
         h.samples = (uint32_t)vplPathTracer_GetSums(tracer).samples;

@@ -210,6 +210,7 @@ static vplResult loadState(Loading* l)
     }
     r->edgeTries = (int)h->tries;
     r->coarserSquare = h->coarser;
+    r->lightRays = h->lights;
     if (h->edges[0] > 0) { // made again, from the same picture
         TRY(vplRenderer_TraceEdges(r, (int)h->edges[0], (int)h->edges[1]));
     }

@@ -57,7 +57,9 @@ struct vplRenderer {
     int edgeTries;             // with the passes so far, that left more error than was asked for
     double
         coarserSquare; // squared error beside edges of the plan before, which had fewer patches; 0: there was none
-    bool stale;        // results of stages are not those of the last pass
+    double
+        lightRays; // that virtual lights or paths would have needed instead of patches; at least 1 after patches, 0 before
+    bool stale;             // results of stages are not those of the last pass
     double start, cpuStart; // ms
     double planStart;       // ms, of the plan under way
     double planRays;        // of all plans before it
@@ -150,9 +152,9 @@ vplResult vplRefineTruth(vplRenderer* renderer);
 // *moreOut: the truth is better known now, or pixels at edges are traced, so that the picture is to be judged again.
 vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
 
-// After the truth was asked: traces pixels at edges where that costs little beside the passes so far and is likely to prove the
-// error that was asked for. *moreOut as above.
-vplResult vplTryEdges(vplRenderer* renderer, double asked, bool* moreOut);
+// The same after the first pass, when noise and bias cannot be told apart: traces pixels at edges where that costs little beside the
+// pass and is likely to prove the error that was asked for, or goes on with patches where they may need far fewer rays.
+vplResult vplReconsiderEarly(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
 
 // After a pass of path tracing that --method auto has chosen for an error: goes back to virtual lights where the noise of the
 // paths says that they need more rays.

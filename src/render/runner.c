@@ -342,6 +342,13 @@ vplResult vplRunner_RunStage(vplRunner* r, vplStageId id)
 
 vplResult vplRunner_RunPlan(vplRunner* r, const vplPlan* plan, vplStageId last)
 {
+    uint32_t planned = 0;
+    for (int i = 0; i < plan->stageCount; i++) {
+        planned |= 1u << plan->stages[i].id;
+    }
+    for (int id = 0; id < VPL_STAGE_COUNT; id++) { // of an earlier plan
+        r->run.results[id] = (planned & 1u << id) != 0 ? r->run.results[id] : NULL;
+    }
     r->run.plan = plan;
     r->stageTo = 0;
     for (int i = 0; i < plan->stageCount; i++) {

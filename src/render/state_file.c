@@ -31,6 +31,7 @@ void vplState_StreamHeader(vplStream* s, vplStateHeader* h)
     vplStream_Word(s, &h->edges[1]);
     vplStream_Long(s, &h->tries);
     vplStream_Doubles(s, &h->coarser, 1);
+    vplStream_Doubles(s, &h->lights, 1);
 }
 
 size_t vplState_Size(const vplStateHeader* h)

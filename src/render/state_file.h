@@ -8,7 +8,7 @@
 #include "render/renderer.h"
 #include "render/state_stream.h"
 
-enum { VPL_STATE_VERSION = 4, VPL_STATE_HEADER_BYTES = 152, VPL_STATE_CHECKSUM_BYTES = 8 };
+enum { VPL_STATE_VERSION = 5, VPL_STATE_HEADER_BYTES = 160, VPL_STATE_CHECKSUM_BYTES = 8 };
 
 // Arrays that a file may have; VPL_STATE_ONCE: none, the picture is drawn again.
 enum { VPL_STATE_PASSES = 1, VPL_STATE_PATHS = 2, VPL_STATE_DIRECT = 4, VPL_STATE_ONCE = 8 };
@@ -33,6 +33,7 @@ typedef struct vplStateHeader {
     uint32_t edges[2];        // edgePixels and edgePaths of vplRenderer
     uint64_t tries;           // edgeTries of vplRenderer
     double coarser;           // coarserSquare of vplRenderer
+    double lights;            // lightRays of vplRenderer
 } vplStateHeader;
 
 // Writes or reads the header, behind the letters.

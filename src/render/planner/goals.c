@@ -266,7 +266,7 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
         } else if (decides) {
             TRY(vplReconsider(r, asked, doneOut, &more));
         } else {
-            TRY(vplTryEdges(r, asked, &more));
+            TRY(vplReconsiderEarly(r, asked, doneOut, &more));
         }
     }
     return VPL_SUCCESS;
