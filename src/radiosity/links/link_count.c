@@ -2,7 +2,8 @@
 // Estimates how many links there will be, from a sample of the pairs that finding them would judge.
 // Based on: Donald Knuth, Estimating the Efficiency of Backtrack Programs, Mathematics of Computation 29,
 // 1975: a tree is measured by following some of its branches, each weighted by the number that it stands for.
-// Departs: all branches of one level are followed together, and the sample of each level is systematic.
+// Departs: all branches of one level are followed together, and the sample of each level is systematic, with a chance in
+// proportion to the sides of a pair, as most links come from large groups.
 #include "radiosity/links/links.h"
 
 #include "base/rng.h"
@@ -17,52 +18,76 @@ enum {
 
 typedef struct Count {
     vplLinkWork work;
-    vplLinkPair *pairs, *parts; // of this level, and of the next
+    vplLinkPair *pairs, *parts;    // of this level, and of the next
+    double *weights, *partWeights; // the number of pairs that each stands for
     int count, partCount;
-    double weight;        // the number of pairs that each of this level stands for
     double links, widest; // the most pairs of a level
 } Count;
 
-// Every pair has at most three parts.
-static void push(Count* c, int p, int q, const vplLinkAnswer* answer)
+// Every pair has at most three parts, which stand for as many as it.
+static void push(Count* c, int p, int q, double weight, const vplLinkAnswer* answer)
 {
+    c->partWeights[c->partCount] = weight;
     c->parts[c->partCount++] = (vplLinkPair){
         .p = p, .q = q, .visible = answer->visible, .clear = answer->clear, .blocker = answer->blocker};
 }
 
-// Judges a pair of this level.
-static void judge(Count* c, const vplLinkPair* pair)
+// Judges pair i of this level.
+static void judge(Count* c, int i)
 {
+    const vplLinkPair* pair = &c->pairs[i];
+    const double weight = c->weights[i];
     const vplLinkNode *nodes = c->work.tree->nodes, *p = &nodes[pair->p], *q = &nodes[pair->q];
     if (pair->p == pair->q) {
         for (int k = 0; k < 3 && !p->flat && p->children >= 0; k++) {
-            push(c, p->children + k % 2, p->children + (k + 1) / 2, &(vplLinkAnswer){.blocker = -1});
+            push(c, p->children + k % 2, p->children + (k + 1) / 2, weight, &(vplLinkAnswer){.blocker = -1});
         }
         return;
     }
     vplLinkPoints_Draw(&c->work, pair->p);
     vplLinkPoints_Draw(&c->work, pair->q);
     const vplLinkAnswer answer = vplJudgePair(&c->work, pair);
-    c->links += answer.verdict == VPL_LINK_KEEP ? c->weight : 0;
+    c->links += answer.verdict == VPL_LINK_KEEP ? weight : 0;
     for (int k = 0; k < 2; k++) {
         if (answer.verdict == VPL_LINK_DIVIDE_P) {
-            push(c, p->children + k, pair->q, &answer);
+            push(c, p->children + k, pair->q, weight, &answer);
         } else if (answer.verdict == VPL_LINK_DIVIDE_Q) {
-            push(c, pair->p, q->children + k, &answer);
+            push(c, pair->p, q->children + k, weight, &answer);
         }
     }
 }
 
-// The next level: all parts, or MOST of them at equal distances from a random start.
+// The size of a part's sample: more links are likely to come from larger groups.
+static double sizeOf(const Count* c, int i)
+{
+    const vplLinkNode* nodes = c->work.tree->nodes;
+    const vplLinkPair* pair = &c->parts[i];
+    return c->partWeights[i] * ((double)nodes[pair->p].count + nodes[pair->q].count);
+}
+
+// The next level: all parts, or MOST of them at equal distances of summed sizes from a random start.
 static void descend(Count* c, uint64_t level)
 {
-    const double step = c->partCount > MOST ? (double)c->partCount / MOST : 1;
     const double start = (double)vplUnitFloat(vplRandomAt(c->work.def->seed, STREAM, level).v[0]);
-    c->count = c->partCount < MOST ? c->partCount : MOST;
-    for (int i = 0; i < c->count; i++) {
-        c->pairs[i] = c->parts[step > 1 ? (int)((i + start) * step) : i];
+    double total = 0, upTo = 0;
+    for (int i = 0; i < c->partCount; i++) {
+        total += sizeOf(c, i);
     }
-    c->weight *= step;
+    const double step = total / MOST;
+    c->count = 0;
+    for (int i = 0; i < c->partCount; i++) {
+        const double before = upTo, size = sizeOf(c, i);
+        upTo += size;
+        // As often as multiples of the step, moved by the start, are among its sizes.
+        const double times = floor(upTo / step - (double)start) - floor(before / step - (double)start);
+        const double weight = c->partCount <= MOST ? c->partWeights[i]
+                              : times > 0          ? c->partWeights[i] * times * step / size
+                                                   : 0;
+        if (weight > 0 && c->count < MOST) {
+            c->pairs[c->count] = c->parts[i];
+            c->weights[c->count++] = weight;
+        }
+    }
     c->partCount = 0;
 }
 
@@ -70,18 +95,23 @@ static vplResult count(Count* c, vplArena* scratch, struct vplLinkTree* tree)
 {
     c->pairs = vplArena_Alloc(scratch, MOST, sizeof *c->pairs);
     c->parts = vplArena_Alloc(scratch, 3 * MOST, sizeof *c->parts);
+    c->weights = vplArena_Alloc(scratch, MOST, sizeof *c->weights);
+    c->partWeights = vplArena_Alloc(scratch, 3 * MOST, sizeof *c->partWeights);
     TRY(vplArena_Check(scratch));
     TRY(vplLinkTree_Build(scratch, c->work.sides, tree));
     c->work.tree = tree;
     c->work.points = vplArena_Alloc(scratch, (size_t)tree->nodeCount, sizeof *c->work.points);
     TRY(vplArena_Check(scratch));
     c->pairs[0] = (vplLinkPair){.p = 0, .q = 0, .blocker = -1}; // the root and itself
+    c->weights[0] = 1;
     c->count = tree->nodeCount > 0;
     for (uint64_t level = 0; c->count > 0; level++) {
-        c->widest = fmax(c->widest, c->weight * c->count);
+        double wide = 0;
         for (int i = 0; i < c->count; i++) {
-            judge(c, &c->pairs[i]);
+            wide += c->weights[i];
+            judge(c, i);
         }
+        c->widest = fmax(c->widest, wide);
         descend(c, level);
     }
     return VPL_SUCCESS;
@@ -91,7 +121,9 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
                                  double* scratchOut)
 {
     struct vplLinkTree tree = {.nodes = NULL};
-    Count c = {.work = {.sides = sides, .def = def, .allowed = vplAllowedLinkError(sides, def)}, .weight = 1};
+    Count c = {
+        .work = {.sides = sides, .def = def, .allowed = vplAllowedLinkError(sides, def)},
+    };
     vplArena* scratch = vplArena_Create(sides->context);
     vplResult result = vplArena_Check(scratch);
     if (result == VPL_SUCCESS) {
