@@ -58,7 +58,8 @@ struct vplRenderer {
     double
         coarserSquare; // squared error beside edges of the plan before, which had fewer patches; 0: there was none
     double
-        lightRays; // that virtual lights or paths would have needed instead of patches; at least 1 after patches, 0 before
+        lightRays; // what is left for patches of the rays that virtual lights or paths would have needed; at least 1 after
+    // patches, 0 before
     bool stale;             // results of stages are not those of the last pass
     double start, cpuStart; // ms
     double planStart;       // ms, of the plan under way

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "render/planner/edge_steps.h"
+#include "render/planner/patch_plan.h"
+#include "render/planner/ways.h"
 
 #include "render/stages/results.h"
 
@@ -105,4 +106,66 @@ vplResult vplFindEdgeSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], in
     vplImage_Destroy(image);
     vplFree(context, bins);
     return bins != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+// ---- tries
+
+vplResult vplProveEdges(vplRenderer* r, const vplErrorState* s, double asked, bool* moreOut)
+{
+    const vplEdgeNoise noise = vplEdges_Noise(r->edges, r->asked.output.width * r->asked.output.height);
+    const double left = asked * asked - s->square, cost = s->path * r->edgePixels * r->edgePaths;
+    const bool noisy = noise.spread > 0.5 * r->judged.spread;
+    *moreOut = true;
+    if (left > 0 && noisy && 2 * cost < s->spent && 2 * r->edgePaths < VPL_MAX_SAMPLES) {
+        return vplRenderer_TraceEdges(r, r->edgePixels, 2 * r->edgePaths);
+    }
+    if (left > 0 && !noisy && vplProofOf(s, s->spread, left) < s->spent + cost) {
+        return vplRefineTruth(r);
+    }
+    vplLog(r->runner.run.context, VPL_LOG_INFO,
+           "%d paths through each of %d pixels at edges leave an error of about %.3g %%, which is not enough",
+           r->edgePaths, r->edgePixels, 100 * r->error.total);
+    vplRenderer_ForgetEdges(r);
+    vplCountVainPatches(r, cost);
+    r->edgeTries++;
+    return VPL_SUCCESS;
+}
+
+static vplResult traceEdges(vplRenderer* r, const vplWay* way, bool* moreOut)
+{
+    vplLog(r->runner.run.context, VPL_LOG_INFO,
+           "after %d passes the noise is %.3g %% and the error about %.3g %%: traces %d paths through each "
+           "of %d pixels at edges",
+           r->done, 100 * fmax(0, r->error.noise), 100 * r->error.total, way->paths, way->pixels);
+    *moreOut = true;
+    return vplRenderer_TraceEdges(r, way->pixels, way->paths);
+}
+
+vplResult vplFinishWay(vplRenderer* r, const vplWay* way, bool* moreOut)
+{
+    if (way->pixels > 0) {
+        return traceEdges(r, way, moreOut);
+    }
+    *moreOut = true;
+    return vplRefineTruth(r);
+}
+
+// Edges that cost less than this share of the passes are traced before the noise is known well.
+static const double CHEAP = 0.25;
+
+vplResult vplTryEdges(vplRenderer* r, const vplErrorState* s, double asked, bool* moreOut)
+{
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    vplWay best = {.rays = CHEAP * s->spent};
+    int count;
+    TRY(vplFindUsefulSteps(r, steps, &count));
+    for (int i = 0; i < count; i++) {
+        const double left = asked * asked - steps[i].square - 1.5 * steps[i].spread;
+        const double paths = left > 0 ? vplPathsForEdges(s, &steps[i], left) : VPL_MAX_SAMPLES;
+        const double rays = steps[i].pixels * s->path * paths;
+        if (paths < VPL_MAX_SAMPLES && rays < best.rays) {
+            best = (vplWay){rays, 0, 1, steps[i].pixels, (int)paths, 0};
+        }
+    }
+    return best.pixels > 0 ? traceEdges(r, &best, moreOut) : VPL_SUCCESS;
 }

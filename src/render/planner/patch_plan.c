@@ -3,6 +3,7 @@
 
 #include "radiosity/factors/form_factors.h"
 #include "render/planner/planner.h"
+#include "render/renderer.h"
 #include "render/stages/results.h"
 #include "scene/scene.h"
 
@@ -102,4 +103,9 @@ bool vplMayTryPatches(const vplRunner* r, const vplPlan* p, const vplRenderOptio
                          PIXEL_RAYS * pixels * p->emitterCount;
     return needs <= rays && count <= vplMostPatches(r->run.context) && canUsePatches(r, p) &&
            (vplMethodsFor(asked) & VPL_USE_RADIOSITY) != 0;
+}
+
+void vplCountVainPatches(vplRenderer* r, double rays)
+{
+    r->lightRays = r->lightRays > 0 ? fmax(1, r->lightRays - rays) : 0;
 }

@@ -17,6 +17,9 @@ bool vplChoosePatches(const vplRunner* runner, vplPlan* plan);
 bool vplMayTryPatches(const vplRunner* runner, const vplPlan* plan, const vplRenderOptions* asked,
                       double rays);
 
+// Counts rays of patches that were in vain: they and those that follow get no more than virtual lights were foreseen to need.
+void vplCountVainPatches(vplRenderer* renderer, double rays);
+
 // A next try has so many times the patches. Their error beside edges, squared, falls by as much, and form factors take about n^1.5
 // rays (room-area, cornell-area, cornell-spot: n^1.4 to n^1.9 from 1,000 to 4,000).
 #define VPL_MORE_PATCHES      3

@@ -61,9 +61,11 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
         o.radiosity.patches *= VPL_MORE_PATCHES;
     }
     o.output.antialias = r->plan->options.output.antialias;
-    const vplResult result = goOnWith(r, "more patches", &o, doneOut);
-    r->coarserSquare = result == VPL_SUCCESS ? way->rest : r->coarserSquare;
-    return result;
+    const double spent = (double)r->runner.stats.rays - r->planRays;
+    TRY(goOnWith(r, "more patches", &o, doneOut));
+    r->coarserSquare = way->rest;
+    vplCountVainPatches(r, spent);
+    return VPL_SUCCESS;
 }
 
 // The options that were asked for, with rays that compensate the clamp. Virtual lights would have these rays anyway, and
@@ -78,8 +80,9 @@ static vplRenderOptions askedOfLights(const vplRenderer* r)
 static vplResult leavePatches(vplRenderer* r, bool* doneOut)
 {
     const vplRenderOptions o = askedOfLights(r);
+    TRY(goOnWith(r, "virtual lights", &o, doneOut));
     r->lightRays = fmax(r->lightRays, 1);
-    return goOnWith(r, "virtual lights", &o, doneOut);
+    return VPL_SUCCESS;
 }
 
 // Patches are tried once, where a first try, and passes that are lost by it, need at most this share of the rays that are foreseen
@@ -103,8 +106,9 @@ static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool*
     o.lights.shadows = r->plan->options.lights.shadows;
     o.radiosity.patches = VPL_FIRST_PATCHES;
     o.output.antialias = o.output.antialias == 8 ? 16 : o.output.antialias;
+    TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
-    return goOnWith(r, "light that patches exchange", &o, doneOut);
+    return VPL_SUCCESS;
 }
 
 // All light instead of direct light alone.
@@ -146,72 +150,10 @@ vplResult vplTurnBack(vplRenderer* r, double asked, bool* doneOut)
 // and more paths of it are not worth it where they would cost more than this share of what is foreseen.
 static const double KNOWN = 0.1, WORTH = 0.1, WORTH_OF_PATCHES = 0.3;
 
-// Pixels at edges are traced. More of their paths, or of the truth, may prove that the error is met; else the picture is as before.
-static vplResult proveEdges(vplRenderer* r, const vplErrorState* s, double asked, bool* moreOut)
-{
-    const vplEdgeNoise noise = vplEdges_Noise(r->edges, r->asked.output.width * r->asked.output.height);
-    const double left = asked * asked - s->square, cost = s->path * r->edgePixels * r->edgePaths;
-    const bool noisy = noise.spread > 0.5 * r->judged.spread;
-    *moreOut = true;
-    if (left > 0 && noisy && 2 * cost < s->spent && 2 * r->edgePaths < VPL_MAX_SAMPLES) {
-        return vplRenderer_TraceEdges(r, r->edgePixels, 2 * r->edgePaths);
-    }
-    if (left > 0 && !noisy && vplProofOf(s, s->spread, left) < s->spent + cost) {
-        return vplRefineTruth(r);
-    }
-    vplLog(r->runner.run.context, VPL_LOG_INFO,
-           "%d paths through each of %d pixels at edges leave an error of about %.3g %%, which is not enough",
-           r->edgePaths, r->edgePixels, 100 * r->error.total);
-    vplRenderer_ForgetEdges(r);
-    r->edgeTries++;
-    return VPL_SUCCESS;
-}
-
-static vplResult traceEdges(vplRenderer* r, const vplWay* way, bool* moreOut)
-{
-    vplLog(r->runner.run.context, VPL_LOG_INFO,
-           "after %d passes the noise is %.3g %% and the error about %.3g %%: traces %d paths through each "
-           "of %d pixels at edges",
-           r->done, 100 * fmax(0, r->error.noise), 100 * r->error.total, way->paths, way->pixels);
-    *moreOut = true;
-    return vplRenderer_TraceEdges(r, way->pixels, way->paths);
-}
-
-// Follows a way that needs no more passes: traces its pixels at edges or, if it has none, more paths of the truth, which may prove
-// that the error is met.
-static vplResult finishWay(vplRenderer* r, const vplWay* way, bool* moreOut)
-{
-    if (way->pixels > 0) {
-        return traceEdges(r, way, moreOut);
-    }
-    *moreOut = true;
-    return vplRefineTruth(r);
-}
-
-// Edges that cost less than this share of the passes are traced before the noise is known well.
-static const double CHEAP = 0.25;
-
-static vplResult tryEdges(vplRenderer* r, const vplErrorState* s, double asked, bool* moreOut)
-{
-    vplEdgeStep steps[VPL_EDGE_STEPS];
-    vplWay best = {.rays = CHEAP * s->spent};
-    int count;
-    TRY(vplFindUsefulSteps(r, steps, &count));
-    for (int i = 0; i < count; i++) {
-        const double left = asked * asked - steps[i].square - 1.5 * steps[i].spread;
-        const double paths = left > 0 ? vplPathsForEdges(s, &steps[i], left) : VPL_MAX_SAMPLES;
-        const double rays = steps[i].pixels * s->path * paths;
-        if (paths < VPL_MAX_SAMPLES && rays < best.rays) {
-            best = (vplWay){rays, 0, 1, steps[i].pixels, (int)paths, 0};
-        }
-    }
-    return best.pixels > 0 ? traceEdges(r, &best, moreOut) : VPL_SUCCESS;
-}
-
 vplResult vplReconsiderEarly(vplRenderer* r, double asked, bool* doneOut, bool* moreOut)
 {
     const vplErrorState s = vplErrorState_Of(r);
-    TRY(tryEdges(r, &s, asked, moreOut));
+    TRY(vplTryEdges(r, &s, asked, moreOut));
     const double more = s.spent * fmax(0, s.square / (asked * asked) - 1); // as if all of the error was noise
     return *moreOut ? VPL_SUCCESS : tryPatches(r, fmin(more, s.paths / (asked * asked)), 0, doneOut);
 }
@@ -239,10 +181,10 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
 {
     vplWay way;
     if (r->plan->progressive && r->done < SURE_PASSES && r->error.total < 2 * asked) {
-        return tryEdges(r, s, asked, moreOut);
+        return vplTryEdges(r, s, asked, moreOut);
     }
     if (r->edges != NULL) {
-        return proveEdges(r, s, asked, moreOut);
+        return vplProveEdges(r, s, asked, moreOut);
     }
     TRY(vplFindWay(r, s, asked, &way));
     const double paths = s->paths / (0.9 * asked * asked);
@@ -270,7 +212,7 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     if (way.passes > 1 || isinf(way.rays)) {
         return VPL_SUCCESS;
     }
-    return finishWay(r, &way, moreOut);
+    return vplFinishWay(r, &way, moreOut);
 }
 
 // Radiosity has no passes that add up: pixels at edges are traced, or the patches are made smaller, or virtual lights take over.
@@ -279,7 +221,7 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
 {
     vplWay way;
     if (r->edges != NULL) {
-        return proveEdges(r, s, asked, moreOut);
+        return vplProveEdges(r, s, asked, moreOut);
     }
     TRY(vplFindWay(r, s, asked, &way));
     if (r->coarserSquare > 0 && way.rest > asked * asked && way.rest > 0.5 * r->coarserSquare) {
@@ -296,7 +238,7 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
     if (way.finer > 0) {
         return divide(r, &way, doneOut);
     }
-    return finishWay(r, &way, moreOut);
+    return vplFinishWay(r, &way, moreOut);
 }
 
 // The least squared error for the rays that the time is enough for.

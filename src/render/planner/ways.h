@@ -51,4 +51,15 @@ vplResult vplFindUsefulSteps(vplRenderer* renderer, vplEdgeStep steps[VPL_EDGE_S
 // The way that needs least rays; infinitely many: there is none.
 vplResult vplFindWay(vplRenderer* renderer, const vplErrorState* state, double asked, vplWay* wayOut);
 
+// Pixels at edges are traced. More of their paths, or of the truth, may prove that the error is met; else the picture is as before.
+// *moreOut: the picture is to be judged again.
+vplResult vplProveEdges(vplRenderer* renderer, const vplErrorState* state, double asked, bool* moreOut);
+
+// Follows a way that needs no more passes: traces its pixels at edges or, if it has none, more paths of the truth, which may prove
+// that the error is met.
+vplResult vplFinishWay(vplRenderer* renderer, const vplWay* way, bool* moreOut);
+
+// Traces pixels at edges where that costs little beside the passes so far, and is likely to prove the error.
+vplResult vplTryEdges(vplRenderer* renderer, const vplErrorState* state, double asked, bool* moreOut);
+
 #endif
