@@ -45,11 +45,14 @@ run() {
 
 mkdir -p build
 rm -f build/check-all-failed
-# The longest first, so that the others are built meanwhile. Memory is watched, not values: tests that render the same
-# again and again are left to the others. Those from -StillLights on run no line of src that the rest does not run (by gcov).
+# The longest first, so that the others are built meanwhile. Memory is watched, not values: tests that render the same again and
+# again, or compare means of many pictures, are left to the others.
 TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow -PeakBytes -OfLampsAre -ThatEmitIsDirect
     -StillLights -PredictedTime -ManyEmittersAre -SpeedsChange -ObjectsInOnePlane -IsThereTwice -FurnaceIsGathered
-    -MethodsThatGoOn -KeepACopy"
+    -MethodsThatGoOn -KeepACopy -CancelledAnywhereEndsTheSame -BitsDependOnNeither -TrianglesHaveTheMean -EmittersChangeNoMean
+    -EachOfManyLamps -PointsLieOnCompact -CentroidsInMidAir -TracedEdges -ErrorHoldsWhere -PiecesHaveTheBits -TeamsHaveTheBits
+    -SealedRoomsAreBlack -PanesLet -MapsAndRaysAgree -SameAtAnySize -PassesHaveNothing -WhereLampsOutnumber -FewerLightsThan
+    -RenderThatWasSaved -TheCountHolds -TheEstimateOfLinks -ThroughASlot -VainAreTriedOnce"
 ALSO=build/gcc-asan-ubsan/nulls
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g -O1" SANITIZE=address,undefined
 ALSO=

@@ -106,6 +106,8 @@ static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool*
     o.output.antialias = o.output.antialias == 8 ? 16 : o.output.antialias;
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
+    vplTruth_Destroy(r->truth); // its pixels were chosen by a noisy picture
+    r->truth = NULL;
     return VPL_SUCCESS;
 }
 
@@ -213,8 +215,17 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     return vplFinishWay(r, &way, moreOut);
 }
 
-// A thousand patches foresee too many of them for scenes of small triangles (furnished: 9,000 where 3,000 leave less than 10 %).
+// A thousand patches foresee too many of them for scenes of small triangles, and the first pass too few rays of virtual lights
+// (furnished: 9,000 patches where 3,000 leave less than 10 %).
 static const double HOPE = 2;
+
+// True where patches are not worth their rays: there is no way, or virtual lights need far fewer.
+static bool isHopeless(const vplRenderer* r, const vplErrorState* s, const vplWay* way)
+{
+    const bool over = way->rays > HOPE * r->lightRays ||
+                      (way->finer > 0 && VPL_MORE_PATCHES_COST * s->spent > r->lightRays);
+    return isinf(way->rays) || (r->lightRays > 0 && over);
+}
 
 // Radiosity has no passes that add up: pixels at edges are traced, or the patches are made smaller, or virtual lights take over.
 static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double asked, bool* doneOut,
@@ -233,7 +244,7 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
         *moreOut = true;
         return vplRefineTruth(r);
     }
-    if (isinf(way.rays) || (r->lightRays > 0 && way.rays > HOPE * r->lightRays)) {
+    if (isHopeless(r, s, &way)) {
         return leavePatches(r, doneOut);
     }
     if (way.finer > 0) {

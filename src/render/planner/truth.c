@@ -12,8 +12,8 @@
 #include <math.h>
 
 enum {
-    MAX_PIXELS = 512,
-    MANY_PIXELS = 1024,         // of a picture by patches for a small error
+    FEW_PIXELS = 512,
+    MANY_PIXELS = 1024,
     FIRST_PATHS = 4,            // of each half
     TRUTH_STREAM = 0x80000009u, // of random numbers
     SEED = 0x7472757468         // differs from that of pictures
@@ -109,16 +109,9 @@ void vplTruth_SetPaths(vplTruth* truth, int each)
     truth->paths.done = each;
 }
 
-// Patches have no noise, and few pixels have most of their error: below 4 % more pixels are compared.
-static int mostPixels(const vplPlan* p)
+vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, bool many, vplTruth** truthOut)
 {
-    return p->options.method == VPL_METHOD_RADIOSITY && p->options.stop.maxError < 0.04 ? MANY_PIXELS
-                                                                                        : MAX_PIXELS;
-}
-
-vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, vplTruth** truthOut)
-{
-    const int pixels = picture->width * picture->height, most = mostPixels(run->plan);
+    const int pixels = picture->width * picture->height, most = many ? MANY_PIXELS : FEW_PIXELS;
     vplTruth* t;
     TRY(vplTruth_Open(run, pixels < most ? pixels : most, &t));
     const vplRandom4 r = vplRandomAt(t->paths.scene.def.seed, TRUTH_STREAM, 0);

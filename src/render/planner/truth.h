@@ -17,9 +17,9 @@ typedef struct vplJudgement {
     int64_t rays;        // cast for the truth, so far
 } vplJudgement;
 
-// Chooses pixels of the picture and traces the first paths. Where neighbours differ much, as at edges, more
+// Chooses 512 pixels of the picture, or 1,024 if `many`, and traces the first paths. Where neighbours differ much, as at edges, more
 // pixels are chosen, and each counts for less. The run's geometry must outlive it.
-vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, vplTruth** truthOut);
+vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, bool many, vplTruth** truthOut);
 
 // NULL is allowed.
 void vplTruth_Destroy(vplTruth* truth);
