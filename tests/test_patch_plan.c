@@ -211,6 +211,8 @@ TEST(PatchesTakeOverWhereLightsNeedFarMore, 2, SLOW)
     vplRenderer* r;
     vplRenderStats stats, alone;
     vplImage* image;
+    o.output.width = 160; // no edges are traced in the end
+    o.output.height = 90;
     assert_int_equal(methodFor(scene, &o), VPL_METHOD_KELLER);
     assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
     assert_true(stepToEnd(r) >= 2);
@@ -220,7 +222,7 @@ TEST(PatchesTakeOverWhereLightsNeedFarMore, 2, SLOW)
     assert_true(stats.relativeErrorEstimate <= 0.1);
     o.stop.maxError = 0;
     vplImage_Destroy(renderScene(scene, &o, &alone));
-    assert_true(o.path.edgePixels > 0 || alone.imageHash == stats.imageHash);
+    assert_true(alone.imageHash == stats.imageHash);
     vplImage_Destroy(image);
     vplRenderer_Destroy(r);
     vplScene_Destroy(scene);
