@@ -52,7 +52,7 @@ TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow -PeakBy
     -MethodsThatGoOn -KeepACopy -CancelledAnywhereEndsTheSame -BitsDependOnNeither -TrianglesHaveTheMean -EmittersChangeNoMean
     -EachOfManyLamps -PointsLieOnCompact -CentroidsInMidAir -TracedEdges -ErrorHoldsWhere -PiecesHaveTheBits -TeamsHaveTheBits
     -SealedRoomsAreBlack -PanesLet -MapsAndRaysAgree -SameAtAnySize -PassesHaveNothing -WhereLampsOutnumber -FewerLightsThan
-    -RenderThatWasSaved -TheCountHolds -TheEstimateOfLinks -ThroughASlot -VainAreTriedOnce"
+    -RenderThatWasSaved -TheCountHolds -TheEstimateOfLinks -ThroughASlot"
 ALSO=build/gcc-asan-ubsan/nulls
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g -O1" SANITIZE=address,undefined
 ALSO=

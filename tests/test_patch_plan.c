@@ -203,16 +203,18 @@ TEST(ARenderWithPatchesIsResumedToTheSameBits, 2, SLOW)
 }
 
 // In a flat most virtual lights are behind doors: after a pass of them patches are quicker (320x180: 3.4 s instead of 11). The
-// picture is that of a render that began with them.
+// picture is that of a render that began with them, also when it was saved in between.
 TEST(PatchesTakeOverWhereLightsNeedFarMore, 2, SLOW)
 {
     vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    const char* path = temporaryName(".taken");
     vplRenderOptions o = optionsFor(0.1);
     vplRenderer* r;
     vplRenderStats stats, alone;
     vplImage* image;
     o.output.width = 160; // no edges are traced in the end
     o.output.height = 90;
+    const vplRenderOptions asked = o;
     assert_int_equal(methodFor(scene, &o), VPL_METHOD_KELLER);
     assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
     assert_true(stepToEnd(r) >= 2);
@@ -223,6 +225,11 @@ TEST(PatchesTakeOverWhereLightsNeedFarMore, 2, SLOW)
     o.stop.maxError = 0;
     vplImage_Destroy(renderScene(scene, &o, &alone));
     assert_true(alone.imageHash == stats.imageHash);
+    bool ended;
+    saveAfter(scene, &asked, 1, path, &ended);
+    finishSaved(scene, &asked, path, &alone);
+    assert_true(alone.imageHash == stats.imageHash);
+    remove(path);
     vplImage_Destroy(image);
     vplRenderer_Destroy(r);
     vplScene_Destroy(scene);
@@ -242,9 +249,9 @@ static int countPatchSteps(vplRenderer* r, int steps)
 
 // Where a door stands ajar patches err by the light that comes through it: a few are tried once, and virtual lights go on, also
 // where the render was saved in between.
-TEST(PatchesInVainAreTriedOnce, 2)
+TEST(PatchesInVainAreTriedOnce, 2, SLOW)
 {
-    enum { STEPS = 30 };
+    enum { STEPS = 16 };
     vplScene* scene = openScene(context, "examples/scenes/door-ajar.json");
     const char* path = temporaryName(".tried");
     vplRenderOptions o = optionsFor(0.1);

@@ -198,7 +198,7 @@ vplResult vplRenderer_TraceEdges(vplRenderer* r, int pixels, int paths)
     if (result == VPL_SUCCESS) {
         r->edgePixels = pixels;
         r->edgePaths = paths;
-        r->edgeRays += vplEdges_Rays(r->edges);
+        r->otherRays += vplEdges_Rays(r->edges);
     }
     vplRun_AddTime(&r->runner.run, "edges", start);
     return result;

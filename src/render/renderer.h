@@ -77,7 +77,8 @@ struct vplRenderer {
     vplJudgement judged; // of the last picture that the truth was asked about
     vplErrorParts error; // of the picture of all passes so far
     vplTurn turn;        // where path tracing was begun
-    int64_t edgeRays;    // of all tries of edges since the renderer was made or its state loaded
+    int64_t
+        otherRays; // of tries of edges and earlier truths, since the renderer was made or its state loaded
     double judgedNoise;  // noise when the truth was asked last
     double spreadBefore; // of the truth, before it was refined after the last pass; infinite: it was not
     bool unreviewed;     // the last pass is part of the picture, but vplReview was cancelled after it

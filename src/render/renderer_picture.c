@@ -111,7 +111,7 @@ void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderSta
     stats->peakBytes = vplRunner_PeakBytes(&r->runner);
     stats->imageHash = image != NULL ? vplImage_Hash(image) : 0;
     *statsOut = *stats;
-    statsOut->rays += r->edgeRays + vplTruth_Rays(r->truth); // which no plan counts as its own
+    statsOut->rays += r->otherRays + vplTruth_Rays(r->truth); // which no plan counts as its own
 }
 
 vplShown vplRenderer_Shown(const vplRenderer* r)

@@ -106,6 +106,7 @@ static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool*
     o.output.antialias = o.output.antialias == 8 ? 16 : o.output.antialias;
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
+    r->otherRays += vplTruth_Rays(r->truth);
     vplTruth_Destroy(r->truth); // its pixels were chosen by a noisy picture
     r->truth = NULL;
     return VPL_SUCCESS;
