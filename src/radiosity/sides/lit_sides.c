@@ -8,13 +8,20 @@
 #include "radiosity/sides/side.h"
 
 #include <limits.h>
+#include <math.h>
+#include <string.h>
 
 enum {
     QUARTERS = 4, // of a side: one sample in each
     GATHERS = 4,  // rays from each sample
     LEAST_PASSES = 4,
-    MOST_PASSES = 16 // each pass finds one more room behind rooms
+    MOST_PASSES = 16,       // each pass finds one more room behind rooms
+    DARK_SAMPLES = 1 << 16, // of dark sides, if they were all of the scene
+    MOST_DARK_PASSES = 1 << 10
 };
+
+// The distance of points beside a sample, over the height of its offset point.
+static const float WIDTH = 4;
 
 // ---- one side
 
@@ -72,6 +79,19 @@ static void testLight(const vplLitSearch* s, int side, int64_t* rays)
     }
 }
 
+// True if light reaches two points beside the sample, too: what slips through a seam between surfaces is thinner.
+static bool isBroad(const vplLitSearch* s, const vplLitSample* sample, vplVec3 from, int64_t* rays)
+{
+    const float step = WIDTH * s->heights[sample->side / 2];
+    vplVec3 across[2];
+    bool broad = true;
+    vplTangentFrame(vplLitSearch_Normal(s, sample->side, sample->triangle), &across[0], &across[1]);
+    for (int k = 0; k < 2 && broad; k++) {
+        broad = vplLitSearch_IsVisible(s, vplAdd(sample->point, vplScale(step, across[k])), from, rays);
+    }
+    return broad;
+}
+
 // Tests whether light reaches a side that was found from a viewpoint alone. The result is in nextFromEye.
 static void testFromEye(const vplLitSearch* s, int side, int64_t* rays)
 {
@@ -79,7 +99,8 @@ static void testFromEye(const vplLitSearch* s, int side, int64_t* rays)
     for (int i = 0; i < VPL_PATCH_CELLS && s->nextFromEye[side] != 0; i++) {
         vplLitSample sample = {.side = side, .cell = i, .index = s->pass % VPL_LIT_SAMPLES};
         vplVec3 from;
-        if (vplLitSample_Offset(s, &sample, rays) && vplLitSample_IsLit(s, &sample, GATHERS, rays, &from)) {
+        if (vplLitSample_Offset(s, &sample, rays) && vplLitSample_IsLit(s, &sample, GATHERS, rays, &from) &&
+            (sample.fromEye || isBroad(s, &sample, from, rays))) {
             s->nextFromEye[side] = sample.fromEye;
         }
     }
@@ -145,26 +166,50 @@ static int countUnlit(const vplLitSearch* s)
     return unlit;
 }
 
+static double areaOf(const vplLitSearch* s, int patch)
+{
+    vplVec3 c[3];
+    if (vplPatches_IsGroup(s->patches, patch)) {
+        return 0; // its sides are small
+    }
+    vplPatchNode_GetCorners(s->patches, s->patches->patches[patch], 0, c);
+    const vplVec3 cross = vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0]));
+    return 0.5 * sqrt((double)vplDot(cross, cross));
+}
+
+// Counts the sides that viewpoints see and no light was found to reach, and sums their areas.
+static int countDark(const vplLitSearch* s, double* areaOut)
+{
+    int count = 0;
+    *areaOut = 0;
+    for (int side = 0; side < 2 * s->patches->patchCount; side++) {
+        if (s->fromEye[side]) {
+            count++;
+            *areaOut += areaOf(s, side / 2);
+        }
+    }
+    return count;
+}
+
 // Closes sides that viewpoints see but light does not reach, as in a sealed room: their form factors with lit ones are
-// 0 but for rounding at the seams. Without light sources they stay. Each pass casts up to 80 rays from each of them,
-// and another follows while one was found to be lit. The pass is set back: other steps have the same random numbers as
-// without.
+// 0 but for rounding at the seams. Without light sources they stay. Each pass casts up to 80 rays from each of them. Passes
+// follow while one was found to be lit, and until there are enough samples for the spot of a light behind a keyhole, which
+// one pass misses on large sides. The pass is set back: other steps have the same random numbers as without.
 static vplResult closeDarkRooms(vplLitSearch* s)
 {
     const int sides = 2 * s->patches->patchCount, pass = s->pass;
-    int left = 0, before = INT_MAX;
-    for (int side = 0; side < sides && s->emission->sourceCount > 0; side++) {
-        left += s->fromEye[side];
-    }
-    while (left > 0 && left < before) {
+    double area, samples = 0;
+    int left = s->emission->sourceCount > 0 ? countDark(s, &area) : 0, before = INT_MAX;
+    for (int i = 0; left > 0 && i < MOST_DARK_PASSES; i++) {
         int added;
-        TRY(vplLitSearch_ForAllSides(s, testFromEye, (const double[2]){0.7, 0.7}, &added));
-        before = left;
-        left = 0;
-        for (int side = 0; side < sides; side++) {
-            s->fromEye[side] = s->nextFromEye[side];
-            left += s->fromEye[side];
+        if (left == before && samples * s->geometry->area >= DARK_SAMPLES * area) {
+            break;
         }
+        TRY(vplLitSearch_ForAllSides(s, testFromEye, (const double[2]){0.7, 0.7}, &added));
+        samples += (double)VPL_PATCH_CELLS * left;
+        memcpy(s->fromEye, s->nextFromEye, (size_t)sides * sizeof *s->fromEye);
+        before = left;
+        left = countDark(s, &area);
     }
     s->pass = pass;
     for (int side = 0; side < sides && left > 0; side++) {
