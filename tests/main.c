@@ -114,7 +114,8 @@ int main(int count, char** words)
         for (; test != NULL && strcmp(test->file, head->file) == 0; test = test->next) {
             const bool isChosen = isWanted(count, words, test) && !(quick && test->slow);
             chosen += isChosen;
-            if (isChosen && !(chosen % 2 == 1 ? even : odd)) {
+            const bool isOthers = chosen % 2 == 1 ? even : odd; // the other process takes it
+            if (isChosen && !isOthers) {
                 wanted[n++] = (struct CMUnitTest){test->name, runTest, NULL, NULL, test};
             }
         }

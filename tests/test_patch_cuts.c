@@ -385,7 +385,7 @@ TEST(ManySealedRoomsAreBlack, 2, SLOW)
 {
     // All 2,000 take more than half an hour: VPL_SEEDS=2000 build/vpl-tests ManySealedRoomsAreBlack
     const char* seeds = getenv("VPL_SEEDS");
-    const uint64_t end = seeds != NULL ? strtoull(seeds, NULL, 10) : 30;
+    const uint64_t end = seeds != NULL ? strtoull(seeds, NULL, 10) : 60;
     for (uint64_t seed = 10; seed < end; seed++) {
         assertSealed(context, seed, seed % 10 == 0 ? 3000 : 600, seed % 3 == 0);
     }

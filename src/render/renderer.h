@@ -57,9 +57,9 @@ struct vplRenderer {
     int edgeTries;             // with the passes so far, that left more error than was asked for
     double
         coarserSquare; // squared error beside edges of the plan before, which had fewer patches; 0: there was none
-    double
-        lightRays; // what is left for patches of the rays that virtual lights or paths would have needed; at least 1 after
-    // patches, 0 before
+    // Rays that patches may still cost: those that virtual lights or paths were foreseen to need, less those of patches that were in
+    // vain. 0: patches were not tried; at least 1 afterwards.
+    double lightRays;
     bool stale;             // results of stages are not those of the last pass
     double start, cpuStart; // ms
     double planStart;       // ms, of the plan under way
@@ -77,8 +77,7 @@ struct vplRenderer {
     vplJudgement judged; // of the last picture that the truth was asked about
     vplErrorParts error; // of the picture of all passes so far
     vplTurn turn;        // where path tracing was begun
-    int64_t
-        otherRays; // of tries of edges and earlier truths, since the renderer was made or its state loaded
+    int64_t otherRays;   // of traced edges and replaced truths; from 0 where a state is loaded
     double judgedNoise;  // noise when the truth was asked last
     double spreadBefore; // of the truth, before it was refined after the last pass; infinite: it was not
     bool unreviewed;     // the last pass is part of the picture, but vplReview was cancelled after it
@@ -154,8 +153,8 @@ vplResult vplRefineTruth(vplRenderer* renderer);
 // *moreOut: the truth is better known now, or pixels at edges are traced, so that the picture is to be judged again.
 vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
 
-// The same after the first pass, when noise and bias cannot be told apart: traces pixels at edges where that costs little beside the
-// pass and is likely to prove the error that was asked for, or goes on with patches where they may need far fewer rays.
+// The same decision after the first pass, when noise and bias are not known apart. It traces pixels at edges if that costs little beside
+// the pass and is likely to prove the error that was asked for, or goes on with patches if they may need far fewer rays.
 vplResult vplReconsiderEarly(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
 
 // After a pass of path tracing that --method auto has chosen for an error: goes back to virtual lights where the noise of the

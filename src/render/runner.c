@@ -346,7 +346,7 @@ vplResult vplRunner_RunPlan(vplRunner* r, const vplPlan* plan, vplStageId last)
     for (int i = 0; i < plan->stageCount; i++) {
         planned |= 1u << plan->stages[i].id;
     }
-    for (int id = 0; id < VPL_STAGE_COUNT; id++) { // of an earlier plan
+    for (int id = 0; id < VPL_STAGE_COUNT; id++) { // a stage must not find results of an earlier plan
         r->run.results[id] = (planned & 1u << id) != 0 ? r->run.results[id] : NULL;
     }
     r->run.plan = plan;

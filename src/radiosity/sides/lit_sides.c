@@ -8,7 +8,6 @@
 #include "radiosity/sides/side.h"
 
 #include <limits.h>
-#include <math.h>
 #include <string.h>
 
 enum {
@@ -16,11 +15,11 @@ enum {
     GATHERS = 4,  // rays from each sample
     LEAST_PASSES = 4,
     MOST_PASSES = 16,       // each pass finds one more room behind rooms
-    DARK_SAMPLES = 1 << 16, // of dark sides, if they were all of the scene
+    DARK_SAMPLES = 1 << 16, // on all surfaces of the scene; dark sides get them in proportion to their area
     MOST_DARK_PASSES = 1 << 10
 };
 
-// The distance of points beside a sample, over the height of its offset point.
+// The distance between a sample and the points next to it, in heights of its offset point.
 static const float WIDTH = 4;
 
 // ---- one side
@@ -79,7 +78,7 @@ static void testLight(const vplLitSearch* s, int side, int64_t* rays)
     }
 }
 
-// True if light reaches two points beside the sample, too: what slips through a seam between surfaces is thinner.
+// True if two points next to the sample are lit as well. A ray that leaks through a seam between surfaces lights one point only.
 static bool isBroad(const vplLitSearch* s, const vplLitSample* sample, vplVec3 from, int64_t* rays)
 {
     const float step = WIDTH * s->heights[sample->side / 2];
@@ -166,18 +165,8 @@ static int countUnlit(const vplLitSearch* s)
     return unlit;
 }
 
-static double areaOf(const vplLitSearch* s, int patch)
-{
-    vplVec3 c[3];
-    if (vplPatches_IsGroup(s->patches, patch)) {
-        return 0; // its sides are small
-    }
-    vplPatchNode_GetCorners(s->patches, s->patches->patches[patch], 0, c);
-    const vplVec3 cross = vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0]));
-    return 0.5 * sqrt((double)vplDot(cross, cross));
-}
-
-// Counts the sides that viewpoints see and no light was found to reach, and sums their areas.
+// Counts the sides that viewpoints see and no light was found to reach. *areaOut: of those that are no groups, whose triangles are
+// small enough for few samples.
 static int countDark(const vplLitSearch* s, double* areaOut)
 {
     int count = 0;
@@ -185,16 +174,16 @@ static int countDark(const vplLitSearch* s, double* areaOut)
     for (int side = 0; side < 2 * s->patches->patchCount; side++) {
         if (s->fromEye[side]) {
             count++;
-            *areaOut += areaOf(s, side / 2);
+            *areaOut += vplPatches_IsGroup(s->patches, side / 2) ? 0 : vplPatches_Area(s->patches, side / 2);
         }
     }
     return count;
 }
 
-// Closes sides that viewpoints see but light does not reach, as in a sealed room: their form factors with lit ones are
-// 0 but for rounding at the seams. Without light sources they stay. Each pass casts up to 80 rays from each of them. Passes
-// follow while one was found to be lit, and until there are enough samples for the spot of a light behind a keyhole, which
-// one pass misses on large sides. The pass is set back: other steps have the same random numbers as without.
+// Closes sides that viewpoints see but light does not reach, as in a sealed room. Their form factors with lit sides would be 0
+// but for rounding at seams. Without light sources all sides stay open. Each pass casts up to 80 rays from each dark side. Passes go
+// on while they find lit sides, and until the dark area has its share of DARK_SAMPLES: light through a keyhole makes a spot that
+// 16 samples of a large side miss. At the end the number of the pass is set back, so that later steps draw the same random numbers.
 static vplResult closeDarkRooms(vplLitSearch* s)
 {
     const int sides = 2 * s->patches->patchCount, pass = s->pass;

@@ -210,7 +210,8 @@ static bool isClear(const vplRenderer* r, double asked, bool plansAgain, double 
            (double)r->judged.rays * VPL_PATH_RAY > 0.25 * spent;
 }
 
-// Patches have no noise, and few pixels have most of their error: in large scenes, and below 4 %, more pixels are compared.
+// A picture of patches has no noise, and few pixels have most of its error. More pixels are compared for errors below 4 %, and after
+// patches took over from virtual lights.
 static bool needsManyPixels(const vplRenderer* r)
 {
     const vplRenderOptions* o = &r->plan->options;

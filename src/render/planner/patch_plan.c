@@ -52,11 +52,11 @@ static bool isPlain(const vplRunner* r, const vplPlan* p)
            p->look.reaching >= MOST_REACH;
 }
 
-// Whether the options leave radiosity to choose, in a scene that few emitters light.
-static bool canUsePatches(const vplRunner* r, const vplPlan* p)
+// True if the options allow radiosity, and only a few small emitters light the scene.
+static bool canUsePatches(const vplRunner* r, const vplPlan* p, const vplRenderOptions* o)
 {
-    const vplRenderOptions* o = &p->options;
-    return o->output.show == VPL_SHOW_PICTURE && o->lighting == VPL_LIGHTING_PHYSICAL && hasFewEmitters(r, p);
+    return o->output.show == VPL_SHOW_PICTURE && o->lighting == VPL_LIGHTING_PHYSICAL &&
+           (vplMethodsFor(o) & VPL_USE_RADIOSITY) != 0 && hasFewEmitters(r, p);
 }
 
 // The error that one pass of virtual lights leaves, about; passes grow with the square of a smaller one.
@@ -68,8 +68,8 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const double error = o->stop.maxError, passes = fmax(1, ONE_PASS * ONE_PASS / (error * error));
     const double pixels = (double)o->output.width * o->output.height * passes;
-    const bool can = error > 0 && (vplMethodsFor(o) & VPL_USE_RADIOSITY) != 0 && canUsePatches(r, p);
-    const double patches = can && isPlain(r, p) ? patchesFor(error) : INFINITY;
+    const bool can = error > 0 && canUsePatches(r, p, o) && isPlain(r, p);
+    const double patches = can ? patchesFor(error) : INFINITY;
     if (patches > vplMostPatches(r->run.context) || pixels < PIXELS_PER_PATCH * patches) {
         return false;
     }
@@ -89,7 +89,7 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
 
 enum {
     TRIANGLE_RAYS = 60, // a triangle is cut or grouped in the time of so many rays (furnished)
-    PIXEL_RAYS = 2      // of an emitter in a pixel
+    PIXEL_RAYS = 2      // shadow rays from a pixel to an emitter
 };
 
 // Rays of form factors over the square of the number of patches (flat, loft, room: 0.9 to 1.2).
@@ -101,8 +101,7 @@ bool vplMayTryPatches(const vplRunner* r, const vplPlan* p, const vplRenderOptio
     const double count = VPL_FIRST_PATCHES, pixels = (double)asked->output.width * asked->output.height;
     const double needs = PAIR_RAYS * count * count + (double)TRIANGLE_RAYS * g->triangleCount +
                          PIXEL_RAYS * pixels * p->emitterCount;
-    return needs <= rays && count <= vplMostPatches(r->run.context) && canUsePatches(r, p) &&
-           (vplMethodsFor(asked) & VPL_USE_RADIOSITY) != 0;
+    return needs <= rays && count <= vplMostPatches(r->run.context) && canUsePatches(r, p, asked);
 }
 
 void vplCountVainPatches(vplRenderer* r, double rays)

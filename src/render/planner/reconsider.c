@@ -47,18 +47,26 @@ static vplResult refine(vplRenderer* r, int finer, bool* doneOut)
     return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }
 
-// Multiplies the patches by VPL_MORE_PATCHES, as often as the way says where the scene is plain, once elsewhere, and keeps the error
-// that the way begins with.
-static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
+// The options that were asked for, with so many patches.
+static vplRenderOptions askedWithPatches(const vplRenderer* r, int patches)
 {
     vplRenderOptions o = r->asked;
     o.method = VPL_METHOD_RADIOSITY;
     o.lights.shadows = r->plan->options.lights.shadows;
-    o.radiosity.patches = r->plan->options.radiosity.patches;
+    o.radiosity.patches = patches;
+    o.output.antialias = o.output.antialias == 8 ? 16 : o.output.antialias;
+    return o;
+}
+
+// Multiplies the number of patches by VPL_MORE_PATCHES: as often as the way says in plain scenes, once in others. Keeps the error
+// beside edges, with which that of more patches is compared.
+static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
+{
+    int patches = r->plan->options.radiosity.patches;
     for (int i = 0; i < way->finer && (i == 0 || r->lightRays == 0); i++) {
-        o.radiosity.patches *= VPL_MORE_PATCHES;
+        patches *= VPL_MORE_PATCHES;
     }
-    o.output.antialias = r->plan->options.output.antialias;
+    const vplRenderOptions o = askedWithPatches(r, patches);
     const double spent = (double)r->runner.stats.rays - r->planRays;
     TRY(goOnWith(r, "more patches", &o, doneOut));
     r->coarserSquare = way->rest;
@@ -83,15 +91,15 @@ static vplResult leavePatches(vplRenderer* r, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// Patches are tried once, where a first try, and passes that are lost by it, need at most this share of the rays that are foreseen
-// otherwise: where little light finds its way they are in vain.
+// The planner tries patches once, if the first try and the passes that it discards cost at most this share of the rays that virtual
+// lights or paths are foreseen to need. The share is small, because patches do not reach the error where little light finds its way.
 static const double SHARE_OF_PATCHES = 1.0 / 3;
 
-// After some passes they are tried only where the error is still so many times that which was asked for: else edges are most of it,
-// which patches have, too (loft at 2 %: 18 to 31 s instead of 10).
+// After some passes the planner tries patches only if the error is still more than so many times the one asked for. If it is less,
+// most of the error is at edges, which patches have, too (loft at 2 %: 18 to 31 s instead of 10).
 static const double FAR = 2;
 
-// Goes on with patches instead of a way that needs `otherwise` rays, where they may be quicker.
+// Goes on with patches if they may be quicker than another way, which needs `otherwise` rays. `lost`: rays of passes that are discarded.
 static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool* doneOut)
 {
     const double share = SHARE_OF_PATCHES * otherwise - lost;
@@ -99,11 +107,7 @@ static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool*
     if (!may || !vplMayTryPatches(&r->runner, r->plan, &r->asked, share)) {
         return VPL_SUCCESS;
     }
-    vplRenderOptions o = r->asked;
-    o.method = VPL_METHOD_RADIOSITY;
-    o.lights.shadows = r->plan->options.lights.shadows;
-    o.radiosity.patches = VPL_FIRST_PATCHES;
-    o.output.antialias = o.output.antialias == 8 ? 16 : o.output.antialias;
+    const vplRenderOptions o = askedWithPatches(r, VPL_FIRST_PATCHES);
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
     r->otherRays += vplTruth_Rays(r->truth);
@@ -216,11 +220,11 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     return vplFinishWay(r, &way, moreOut);
 }
 
-// A thousand patches foresee too many of them for scenes of small triangles, and the first pass too few rays of virtual lights
-// (furnished: 9,000 patches where 3,000 leave less than 10 %).
+// A way with patches may need so many times the rays that virtual lights are foreseen to need: in scenes of small triangles the error of
+// 1,000 patches predicts too many patches (furnished: 9,000 where 3,000 leave less than 10 %).
 static const double HOPE = 2;
 
-// True where patches are not worth their rays: there is no way, or virtual lights need far fewer.
+// True if the planner gives patches up: no way reaches the error, or virtual lights are foreseen to need far fewer rays.
 static bool isHopeless(const vplRenderer* r, const vplErrorState* s, const vplWay* way)
 {
     const bool over = way->rays > HOPE * r->lightRays ||

@@ -17,8 +17,8 @@ typedef struct vplJudgement {
     int64_t rays;        // cast for the truth, so far
 } vplJudgement;
 
-// Chooses 512 pixels of the picture, or 1,024 if `many`, and traces the first paths. Where neighbours differ much, as at edges, more
-// pixels are chosen, and each counts for less. The run's geometry must outlive it.
+// Chooses 512 pixels of the picture (1,024 if `many` is true) and traces the first paths through them. Pixels that differ much from
+// their neighbours, as at edges, are chosen with a higher probability and have a smaller weight. The run's geometry must outlive it.
 vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, bool many, vplTruth** truthOut);
 
 // NULL is allowed.
