@@ -93,9 +93,6 @@ TEST(TheCountHolds, 1)
     for (int which = 0; which < 2; which++) {
         const int triangles = g[which]->triangleCount;
         for (int count = 100; count < 4 * triangles; count += count / 3) {
-            if (count > triangles / 4 && count < triangles) {
-                continue;
-            }
             vplPatches* p = groupsOf(g[which], count, 0, true);
             if (abs(p->patchCount - count) > count / 5) {
                 fail_msg("%d patches instead of %d (scene %d)", p->patchCount, count, which);

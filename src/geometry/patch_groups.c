@@ -277,10 +277,10 @@ static void groupBox(vplGroupTree* t, int first, int count)
     }
 }
 
-static void groupNode(vplGroupTree* t, int index, double length)
+static void groupNode(vplGroupTree* t, int index, const vplGroupLength* length)
 {
     const Node* node = &t->nodes[index];
-    if ((double)node->diagonal <= length) {
+    if ((double)node->diagonal <= (node->first < length->finerCount ? length->finer : length->length)) {
         groupBox(t, node->first, node->count);
     } else if (node->children >= 0) {
         groupNode(t, node->children, length);
@@ -288,7 +288,7 @@ static void groupNode(vplGroupTree* t, int index, double length)
     }
 }
 
-int vplGroupTree_Group(vplGroupTree* t, double length)
+int vplGroupTree_Group(vplGroupTree* t, const vplGroupLength* length)
 {
     t->groupCount = 0;
     if (t->count > 0) {

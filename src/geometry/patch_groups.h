@@ -18,9 +18,16 @@ typedef struct vplGroupTree vplGroupTree;
 
 vplResult vplGroupTree_Build(vplArena* scratch, const vplGeometry* geometry, vplGroupTree** treeOut);
 
-// Forms the groups for a length T: the largest boxes of the tree whose diagonal is at most T, divided by emission and
-// by normals. Returns how many there are. `isGrouped` then says which triangles are in one.
-int vplGroupTree_Group(vplGroupTree* tree, double length);
+// The length T that groups are formed for. Where many boxes are alike and T decides about all at once, those of the first
+// `finerCount` triangles of the tree take a smaller one.
+typedef struct vplGroupLength {
+    double length, finer; // metres
+    int finerCount;
+} vplGroupLength;
+
+// Forms the groups: the largest boxes of the tree whose diagonal is at most T, divided by emission and by normals.
+// Returns how many there are. `isGrouped` then says which triangles are in one.
+int vplGroupTree_Group(vplGroupTree* tree, const vplGroupLength* length);
 
 // One byte per triangle of the geometry.
 const uint8_t* vplGroupTree_IsGrouped(const vplGroupTree* tree);

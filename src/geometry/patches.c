@@ -108,13 +108,31 @@ static int countAll(const Roots* roots, double square, int rounds, int enough)
 
 static int countWith(Roots* roots, double length, int rounds, int enough)
 {
-    roots->groupCount = vplGroupTree_Group(roots->tree, length);
+    roots->groupCount = vplGroupTree_Group(roots->tree, &(vplGroupLength){.length = length});
     return countAll(roots, length * length, rounds, enough);
+}
+
+// Where the number of patches jumps between two lengths, as where all boxes are alike: finds how many triangles take the smaller one.
+static vplGroupLength groupParts(Roots* roots, int count, int rounds, vplGroupLength length)
+{
+    int low = 0;
+    length.finerCount = roots->geometry->triangleCount;
+    while (length.finerCount - low > 1) {
+        const int middle = low + (length.finerCount - low) / 2;
+        const vplGroupLength parts = {length.length, length.finer, middle};
+        roots->groupCount = vplGroupTree_Group(roots->tree, &parts);
+        if (countAll(roots, length.length * length.length, rounds, count) < count) {
+            low = middle;
+        } else {
+            length.finerCount = middle;
+        }
+    }
+    return length;
 }
 
 // The T that gives about `count` patches, with groups of triangles. Halves the interval in which it lies until the count
 // is within 2 %, or jumps over it.
-static double groupLength(Roots* roots, int count, int rounds)
+static vplGroupLength groupLength(Roots* roots, int count, int rounds)
 {
     const int enough = count < VPL_MAX_PATCHES / 2 ? 2 * count : VPL_MAX_PATCHES;
     double high = vplGroupTree_Diagonal(roots->tree) * (1 + 0x1p-15), low = high;
@@ -136,7 +154,10 @@ static double groupLength(Roots* roots, int count, int rounds)
             more = found;
         }
     }
-    return more - count <= count - fewer ? low : high;
+    if (more - count > count / 10 && count - fewer > count / 10) {
+        return groupParts(roots, count, rounds, (vplGroupLength){.length = high, .finer = low});
+    }
+    return (vplGroupLength){.length = more - count <= count - fewer ? low : high};
 }
 
 // ---- growing
@@ -183,12 +204,13 @@ static void warnUnresolved(const Roots* roots)
 }
 
 // Groups and cuts triangles for a length. Returns how many patches there are in *countOut.
-static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* roots, double length,
-                             int* countOut)
+static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* roots,
+                             const vplGroupLength* groups, int* countOut)
 {
+    const double length = groups->length;
     roots->pieces = (vplCutPieces){.nodes = NULL};
     roots->count = roots->geometry->triangleCount;
-    roots->groupCount = vplGroupTree_Group(roots->tree, length);
+    roots->groupCount = vplGroupTree_Group(roots->tree, groups);
     TRY(def->cut ? cut(scratch, vplGroupTree_FindUncut(roots->tree, length), roots) : VPL_SUCCESS);
     *countOut = countAll(roots, length * length, def->rounds, VPL_MAX_PATCHES);
     return VPL_SUCCESS;
@@ -201,14 +223,15 @@ static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* 
     enum { ROUNDS = 8 };
     const int count = def->count;
     int least = 1, most = VPL_MAX_PATCHES, wanted = count, best = INT_MAX, found;
-    double nearest = 0;
+    vplGroupLength nearest = {.length = 0};
     TRY(vplGroupTree_Build(scratch, roots->geometry, &roots->tree));
     if (def->size > 0) {
-        return groupAndCut(def, scratch, roots, (double)def->size, &found);
+        nearest.length = (double)def->size;
+        return groupAndCut(def, scratch, roots, &nearest, &found);
     }
     for (int round = 0; round < ROUNDS && least <= most && best > count / 10; round++) {
-        const double length = groupLength(roots, wanted, def->rounds);
-        TRY(groupAndCut(def, scratch, roots, length, &found));
+        const vplGroupLength length = groupLength(roots, wanted, def->rounds);
+        TRY(groupAndCut(def, scratch, roots, &length, &found));
         if (abs(found - count) < best) {
             best = abs(found - count);
             nearest = length;
@@ -218,7 +241,7 @@ static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* 
         const int next = wanted - (found - count);
         wanted = next >= least && next <= most ? next : least + (vplMini(most, 2 * wanted) - least) / 2;
     }
-    return groupAndCut(def, scratch, roots, nearest, &found);
+    return groupAndCut(def, scratch, roots, &nearest, &found);
 }
 
 // ---- growing

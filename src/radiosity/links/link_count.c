@@ -92,15 +92,16 @@ static void descend(Count* c, uint64_t level)
     c->partCount = 0;
 }
 
-static vplResult count(Count* c, vplArena* scratch, struct vplLinkTree* tree)
+static vplResult count(Count* c, const vplPatchSides* sides, const vplLinkDef* def, vplArena* scratch,
+                       struct vplLinkTree* tree)
 {
     c->pairs = vplArena_Alloc(scratch, MOST, sizeof *c->pairs);
     c->parts = vplArena_Alloc(scratch, 3 * MOST, sizeof *c->parts);
     c->weights = vplArena_Alloc(scratch, MOST, sizeof *c->weights);
     c->partWeights = vplArena_Alloc(scratch, 3 * MOST, sizeof *c->partWeights);
     TRY(vplArena_Check(scratch));
-    TRY(vplLinkTree_Build(scratch, c->work.sides, tree));
-    c->work.tree = tree;
+    TRY(vplLinkTree_Build(scratch, sides, tree));
+    c->work = vplLinkWork_Make(sides, tree, def);
     c->work.points = vplArena_Alloc(scratch, (size_t)tree->nodeCount, sizeof *c->work.points);
     TRY(vplArena_Check(scratch));
     c->pairs[0] = (vplLinkPair){.p = 0, .q = 0, .blocker = -1}; // the root and itself
@@ -122,11 +123,11 @@ vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* d
                                  double* scratchOut)
 {
     struct vplLinkTree tree = {.nodes = NULL};
-    Count c = {.work = {.sides = sides, .def = def, .allowed = vplAllowedLinkError(sides, def)}};
+    Count c = {.links = 0};
     vplArena* scratch = vplArena_Create(sides->context);
     vplResult result = vplArena_Check(scratch);
     if (result == VPL_SUCCESS) {
-        result = count(&c, scratch, &tree);
+        result = count(&c, sides, def, scratch, &tree);
     }
     vplArena_Destroy(scratch);
     const double count = sides->count, nodes = 2 * count, batch = fmin(c.widest, VPL_LINK_BATCH);

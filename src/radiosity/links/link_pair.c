@@ -24,6 +24,12 @@ static const double MANY_PAIRS = 16;
 // The fraction of a pair's bound, beyond the estimate, that counts as an error, since points miss peaks.
 static const double PEAK = 0.05;
 
+// Dim sides look for light from others by so many rays each, and all together.
+static const double RAYS_OF_DIM_SIDE = 16384, MOST_DIM_RAYS = 0x1p26;
+
+// An opening between a dim group and another is small if it lets at most this fraction of the rays through.
+static const double SMALL_OPENING = 0.25;
+
 // Up to so many sides a link may err by as much as is asked for; beyond by less, as one over the root of their number.
 enum { MANY_SIDES = 4000 };
 
@@ -38,12 +44,29 @@ static double sentArea(const vplLinkNode* node)
 }
 
 // The error of patches falls with their number, and that of links must fall with it; groups of triangles err by more.
-double vplAllowedLinkError(const vplPatchSides* sides, const vplLinkDef* def)
+static double allowedError(const vplPatchSides* sides, const vplLinkDef* def)
 {
     if (sides->patches->groupCount > 0) {
         return GROUPED * def->error;
     }
     return sides->count > MANY_SIDES ? def->error * sqrt((double)MANY_SIDES / sides->count) : def->error;
+}
+
+vplLinkWork vplLinkWork_Make(const vplPatchSides* sides, const struct vplLinkTree* tree,
+                             const vplLinkDef* def)
+{
+    double area = 0;
+    int dim = 0;
+    for (int i = 0; i < tree->nodeCount; i++) {
+        const vplLinkNode* node = &tree->nodes[i];
+        dim += node->dim && node->children < 0;
+        area += node->dim && node->children < 0 ? (double)node->area : 0;
+    }
+    return (vplLinkWork){.sides = sides,
+                         .tree = tree,
+                         .def = def,
+                         .allowed = allowedError(sides, def),
+                         .dimRays = dim > 0 ? fmin(RAYS_OF_DIM_SIDE * dim, MOST_DIM_RAYS) / area : 0};
 }
 
 // ---- measured
@@ -155,12 +178,49 @@ static void keep(const vplJudgedPair* pair, const Measure* m)
     }
 }
 
+// How many rays look for light between two nodes of which one is dim; 0: neither is, or both are. `mean`: of the points.
+static double dimRays(const vplJudgedPair* pair, double mean)
+{
+    const double areas = (double)pair->p->area * (double)pair->q->area;
+    return pair->p->dim != pair->q->dim ? pair->work->dimRays * areas * mean : 0;
+}
+
+// Decides about groups of which one is dim: what comes through a small opening is kept as the rays find it, whose number is known
+// beforehand. If pairs whose rays find light were divided and looked at again, while others are dropped, a room behind a keyhole
+// would lose half of its light or more. False if more than a small opening is between.
+static bool measureDim(const vplJudgedPair* pair, double rays, vplLinkTerms* terms)
+{
+    const int few = VPL_RAY_PACKET;
+    if (rays > VPL_MOST_LINK_RAYS - few) {
+        pair->answer->verdict = divideLarger(pair);
+        return true;
+    }
+    const int count = vplMaxi(few, (int)rays);
+    vplLinkSeen first = {.open = 0}, seen = {.open = 0};
+    vplCastPairRays(pair, terms, 0, few, &first);
+    if (first.visible > SMALL_OPENING * first.open) {
+        return false;
+    }
+    vplCastPairRays(pair, terms, few, few + count, &seen); // others, so that those above bias nothing
+    vplDarkenTerms(&seen, terms);
+    Measure m = measureOf(pair, terms);
+    const double mean = seen.visible / count, scale = m.mean > 0 ? mean / m.mean : 0;
+    m.mean = mean;
+    for (int axis = 0; axis < 3; axis++) {
+        m.p[axis] *= scale;
+        m.q[axis] *= scale;
+    }
+    keep(pair, &m);
+    return true;
+}
+
 static void measureSides(const vplJudgedPair* pair, const vplLinkTerms* terms)
 {
     vplLinkSeen seen = {.open = 0};
     const bool clear = pair->answer->clear; // a search would take longer than the rays
-    vplCastPairRays(pair, terms, 0, clear ? 0 : vplMini(pair->work->def->samples, VPL_MOST_LINK_RAYS), &seen);
     Measure m = measureOf(pair, terms);
+    const double rays = fmax(pair->work->def->samples, dimRays(pair, m.mean));
+    vplCastPairRays(pair, terms, 0, clear ? 0 : (int)fmin(rays, VPL_MOST_LINK_RAYS), &seen);
     // Neighbours on a curved surface are near, but exchange next to nothing.
     if (!pair->p->group && !pair->q->group && isNear(pair) &&
         pair->sent * m.mean > TINY * pair->work->allowed) {
@@ -189,6 +249,9 @@ static void measureGroups(const vplJudgedPair* pair, double bound, vplLinkTerms*
     const bool rough = m.errorP + m.errorQ > allowed || PEAK * (bound - open) > allowed;
     if (!(open > 0)) {
         answer->verdict = bound <= TINY * allowed ? VPL_LINK_NONE : divideLarger(pair);
+        return;
+    }
+    if (pair->p->dim != pair->q->dim && measureDim(pair, dimRays(pair, m.mean), terms)) {
         return;
     }
     vplLinkSeen seen = {.open = 0};

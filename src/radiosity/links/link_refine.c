@@ -141,9 +141,7 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
 vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
                        vplLinkList* list)
 {
-    Refinement r = {
-        .work = {.sides = sides, .tree = tree, .def = def, .allowed = vplAllowedLinkError(sides, def)},
-        .context = sides->context};
+    Refinement r = {.work = vplLinkWork_Make(sides, tree, def), .context = sides->context};
     vplArena* scratch = vplArena_Create(sides->context);
     const vplResult result = refine(&r, scratch, list);
     vplFree(sides->context, r.pairs);

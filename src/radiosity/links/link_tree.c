@@ -26,11 +26,15 @@ static const double UNEVEN = 0.1;
 // Sides of a group lie in one plane if their corners are within this fraction of its radius of it.
 static const double FLAT = 1e-5;
 
+// Groups are dim if particles hit them less than DIM times as often as all sides on average, which shows only where the average would
+// be LEAST_HITS. Parts of a dim group are dim.
+static const double DIM = 1.0 / 32, LEAST_HITS = 128;
+
 typedef struct Build {
-    const vplPatchSide* sides;
-    const vplPatches* patches;
+    const vplPatchSides* sides;
     struct vplLinkTree* tree;
     double mean;  // expected radiosity, W/m^2; 0: nothing emits
+    double hits;  // expected, of particles, per m^2
     int* scratch; // one per side
 } Build;
 
@@ -55,7 +59,7 @@ static Range rangeOf(const Build* b, const vplLinkNode* node)
         range.low[k] = INFINITY;
         range.high[k] = -INFINITY;
         for (int i = 0; i < node->count; i++) {
-            const float key = keyOf(&b->sides[b->tree->order[node->first + i]], k);
+            const float key = keyOf(&b->sides->sides[b->tree->order[node->first + i]], k);
             range.low[k] = key < range.low[k] ? key : range.low[k];
             range.high[k] = key > range.high[k] ? key : range.high[k];
         }
@@ -75,12 +79,12 @@ static void nextCorner(const Build* b, const vplPatchSide* side, Corner* c)
 {
     c->left--;
     if (c->left > 0) {
-        const vplPatchParts parts = vplPatches_GetParts(b->patches, side->patch);
+        const vplPatchParts parts = vplPatches_GetParts(b->sides->patches, side->patch);
         const int at = 3 * parts.count - c->left, node = parts.nodes[at / 3];
-        c->at = parts.count > 1 ? b->patches->positions[b->patches->nodes[node].corners[at % 3]]
+        c->at = parts.count > 1 ? b->sides->patches->positions[b->sides->patches->nodes[node].corners[at % 3]]
                                 : side->corners[at];
         if (at % 3 == 0) {
-            const vplVec3 n = b->patches->geometry->normals[node];
+            const vplVec3 n = b->sides->patches->geometry->normals[node];
             c->normal = side->back ? vplNegate(n) : n;
         }
     }
@@ -88,10 +92,10 @@ static void nextCorner(const Build* b, const vplPatchSide* side, Corner* c)
 
 static Corner firstCorner(const Build* b, const vplPatchSide* side)
 {
-    if (!vplPatches_IsGroup(b->patches, side->patch)) {
+    if (!vplPatches_IsGroup(b->sides->patches, side->patch)) {
         return (Corner){side->corners[0], side->normal, 3};
     }
-    Corner c = {.left = 3 * vplPatches_GetParts(b->patches, side->patch).count + 1};
+    Corner c = {.left = 3 * vplPatches_GetParts(b->sides->patches, side->patch).count + 1};
     nextCorner(b, side, &c);
     return c;
 }
@@ -126,10 +130,10 @@ static void sumNode(const Build* b, vplLinkNode* node)
     float least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
     double normal[3] = {0}, middle[3] = {0}, area = 0, emitted = 0;
     for (int i = 0; i < node->count; i++) {
-        const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
+        const vplPatchSide* s = &b->sides->sides[b->tree->order[node->first + i]];
         area += (double)s->area;
         emitted += (double)s->area * vplRgbMean(s->emission);
-        const vplVec3 at = middleOf(s, vplPatches_IsGroup(b->patches, s->patch));
+        const vplVec3 at = middleOf(s, vplPatches_IsGroup(b->sides->patches, s->patch));
         for (int axis = 0; axis < 3; axis++) {
             const float x = vplComponent(at, axis);
             least[axis] = x < least[axis] ? x : least[axis];
@@ -160,16 +164,16 @@ static void sumNode(const Build* b, vplLinkNode* node)
     const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     node->normal = length > 1e-3 * area ? vplVec((float)(normal[0] / length), (float)(normal[1] / length),
                                                  (float)(normal[2] / length))
-                                        : b->sides[b->tree->order[node->first]].normal;
+                                        : b->sides->sides[b->tree->order[node->first]].normal;
 }
 
 // Radius, spread of normals and flatness.
 static void measureNode(const Build* b, vplLinkNode* node)
 {
-    const vplPatchSide* firstSide = &b->sides[b->tree->order[node->first]];
+    const vplPatchSide* firstSide = &b->sides->sides[b->tree->order[node->first]];
     double radius = 0, cosine = 1, turn = 1, height = 0, turned = 0;
     for (int i = 0; i < node->count; i++) {
-        const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
+        const vplPatchSide* s = &b->sides->sides[b->tree->order[node->first + i]];
         turn = fmin(turn, (double)vplDot(s->normal, node->normal));
         for (Corner c = firstCorner(b, s); c.left > 0; nextCorner(b, s, &c)) {
             const double towards = (double)vplDot(c.normal, node->normal);
@@ -189,7 +193,7 @@ static void measureNode(const Build* b, vplLinkNode* node)
     node->cosSpread = (float)cosine;
     node->cosTurn = (float)turn;
     node->sinSpread = (float)sqrt(1 - cosine * cosine);
-    node->group = node->count == 1 && vplPatches_IsGroup(b->patches, firstSide->patch);
+    node->group = node->count == 1 && vplPatches_IsGroup(b->sides->patches, firstSide->patch);
     node->flat = (node->count == 1 && !node->group) || (turned <= FLAT && height <= FLAT * radius);
 }
 
@@ -201,7 +205,7 @@ static int divideAt(const Build* b, const vplLinkNode* node, int key, float midd
     int* order = b->tree->order + node->first;
     int before = 0, after = 0;
     for (int i = 0; i < node->count; i++) {
-        if (keyOf(&b->sides[order[i]], key) < middle) {
+        if (keyOf(&b->sides->sides[order[i]], key) < middle) {
             order[before++] = order[i];
         } else {
             b->scratch[after++] = order[i];
@@ -234,22 +238,34 @@ static int halve(const Build* b, const vplLinkNode* node, int depth)
     return before > 0 && before < node->count ? before : node->count / 2;
 }
 
-// Builds the tree below a node whose sides are known.
+static bool isDim(const Build* b, const vplLinkNode* node)
+{
+    const double expected = b->hits * (double)node->area;
+    double hits = 0;
+    for (int i = 0; i < node->count && expected >= LEAST_HITS; i++) {
+        hits += b->sides->hits[b->tree->order[node->first + i]];
+    }
+    return expected >= LEAST_HITS && hits < DIM * expected;
+}
+
+// Builds the tree below a node whose sides are known, and whose parent may be dim.
 static void buildNode(const Build* b, int index, int depth)
 {
     struct vplLinkTree* tree = b->tree;
     vplLinkNode* node = &tree->nodes[index];
     sumNode(b, node);
     measureNode(b, node);
+    node->dim = node->dim || isDim(b, node);
     if (node->count == 1) {
         return;
     }
     const int before = halve(b, node, depth), child = tree->nodeCount;
     node->children = child;
     tree->nodeCount += 2;
-    tree->nodes[child] = (vplLinkNode){.children = -1, .first = node->first, .count = before};
-    tree->nodes[child + 1] =
-        (vplLinkNode){.children = -1, .first = node->first + before, .count = node->count - before};
+    tree->nodes[child] =
+        (vplLinkNode){.children = -1, .first = node->first, .count = before, .dim = node->dim};
+    tree->nodes[child + 1] = (vplLinkNode){
+        .children = -1, .first = node->first + before, .count = node->count - before, .dim = node->dim};
     buildNode(b, child, depth + 1);
     buildNode(b, child + 1, depth + 1);
 }
@@ -266,6 +282,17 @@ static double expectedRadiosity(const vplPatchSides* sides)
     }
     const double lost = area - kept;
     return emitted > 0 ? emitted / (lost > 0.1 * area ? lost : 0.1 * area) : 0;
+}
+
+// How many particles hit a square metre of all sides, on average.
+static double expectedHits(const vplPatchSides* sides)
+{
+    double hits = 0, area = 0;
+    for (int i = 0; i < sides->count && sides->hits != NULL; i++) {
+        hits += sides->hits[i];
+        area += (double)sides->sides[i].area;
+    }
+    return area > 0 ? hits / area : 0;
 }
 
 vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct vplLinkTree* tree)
@@ -287,7 +314,7 @@ vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct 
     if (sides->count > 0) {
         tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = sides->count};
         tree->nodeCount = 1;
-        buildNode(&(Build){sides->sides, sides->patches, tree, expectedRadiosity(sides), scratch}, 0, 0);
+        buildNode(&(Build){sides, tree, expectedRadiosity(sides), expectedHits(sides), scratch}, 0, 0);
     }
     tree->areaUpTo[0] = 0;
     for (int i = 0; i < sides->count; i++) {

@@ -14,6 +14,7 @@ typedef struct vplLinkNode {
     int first, count; // in vplLinkTree.order
     bool flat;        // all sides are in one plane, so none sees another
     bool group;       // one side of a group of triangles
+    bool dim;         // particles found it much darker than the mean
     float area;
     float brightness;           // expected radiosity over the expected mean of all sides; at least 1
     vplVec3 low, high, centre;  // bounds, metres, and their centre
@@ -84,12 +85,14 @@ typedef struct vplLinkWork {
     const struct vplLinkTree* tree;
     const vplLinkDef* def;
     double allowed;        // error of one link
+    double dimRays;        // per m^2 of dim sides: they look for light from others
     vplLinkPoints* points; // of each node
     const int* leafAt; // the node of each side, in the tree's order; NULL: sides are not tried by themselves
 } vplLinkWork;
 
-// The error of one link that def->error means for these sides.
-double vplAllowedLinkError(const vplPatchSides* sides, const vplLinkDef* def);
+// Without points.
+vplLinkWork vplLinkWork_Make(const vplPatchSides* sides, const struct vplLinkTree* tree,
+                             const vplLinkDef* def);
 
 // Draws a node's points on its open cells, stratified by area, and fills work->points[node].
 void vplLinkPoints_Draw(const vplLinkWork* work, int node);

@@ -41,7 +41,7 @@ static double chooseSource(const vplEmission* e, int64_t particle, float u)
 static bool start(const vplLitSearch* s, const vplParticle* p, int64_t* rays, vplLitHit* vertex)
 {
     const int triangle = s->emission->sources[p->source].triangle;
-    *vertex = (vplLitHit){p->position, p->normal, -1, triangle};
+    *vertex = (vplLitHit){.point = p->position, .normal = p->normal, .side = -1, .triangle = triangle};
     if (triangle < 0) {
         return true;
     }
@@ -68,14 +68,13 @@ static int tracePath(const Batch* b, uint64_t particle, vplVec3 direction, vplLi
     return count;
 }
 
-// Drops vertices on sides that are lit already, and vertices that may be wrong: a hit near an edge may round
-// to the wrong side of a wall, which makes the rest of the path wrong, so each segment up to a new side is
-// tested again between offset points.
+// Finds the vertices on sides that are not lit yet. A hit near an edge may round to the wrong side of a wall, which makes the rest
+// of the path wrong, so each segment up to a new side is tested again between offset points, and the rest is dropped.
 static void confirm(const vplLitSearch* s, vplLitHit* path, int count, int64_t* rays)
 {
     for (int i = 0, sure = 0; i < count; i++) {
+        path[i].isSure = false;
         if (path[i].side < 0 || s->open[path[i].side] != 0) {
-            path[i].side = -1;
             continue;
         }
         while (sure < i && vplLitSearch_IsVisible(s, path[sure].point, path[sure + 1].point, rays)) {
@@ -83,9 +82,9 @@ static void confirm(const vplLitSearch* s, vplLitHit* path, int count, int64_t* 
         }
         if (sure < i) {
             count = i;
-            path[i].side = -1;
         } else {
             vplLitSearch_ResolveOverlap(s, &path[i], rays);
+            path[i].isSure = true;
         }
     }
     for (int i = count; i < VERTICES; i++) {
@@ -129,7 +128,11 @@ static int markLit(const Batch* b)
     int added = 0;
     for (int i = 0; i < BATCH * VERTICES; i++) {
         const vplLitHit* hit = &b->vertices[i];
-        if (hit->side >= 0 && s->open[hit->side] == 0) {
+        if (hit->side < 0) {
+            continue;
+        }
+        s->hits[hit->side] += i % VERTICES > 0; // not where it starts, on an area light
+        if (hit->isSure && s->open[hit->side] == 0) {
             s->litPoint[hit->side] = hit->point;
             s->open[hit->side] = VPL_ALL_CELLS;
             added++;

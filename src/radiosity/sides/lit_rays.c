@@ -71,8 +71,10 @@ bool vplLitSearch_Trace(const vplLitSearch* s, vplVec3 from, vplVec3 direction, 
     const bool back = vplDot(direction, hit.normal) > 0;
     const vplVec3 normal = back ? vplNegate(hit.normal) : hit.normal;
     const int patch = vplPatches_Find(s->patches, hit.triangle, hit.position);
-    *hitOut = (vplLitHit){vplAdd(hit.position, vplScale(s->heights[patch], normal)), normal, 2 * patch + back,
-                          hit.triangle};
+    *hitOut = (vplLitHit){.point = vplAdd(hit.position, vplScale(s->heights[patch], normal)),
+                          .normal = normal,
+                          .side = 2 * patch + back,
+                          .triangle = hit.triangle};
     return true;
 }
 

@@ -77,6 +77,7 @@ static vplResult reserve(vplArena* scratch, vplLitSearch* s)
     s->nextOpen = vplArena_AllocZero(scratch, 2 * patches, sizeof *s->nextOpen);
     s->fromEye = vplArena_AllocZero(scratch, 2 * patches, 1);
     s->nextFromEye = vplArena_AllocZero(scratch, 2 * patches, 1);
+    s->hits = vplArena_AllocZero(scratch, 2 * patches, sizeof *s->hits);
     s->litPoint = vplArena_Alloc(scratch, 2 * patches, sizeof *s->litPoint);
     s->nextLitPoint = vplArena_Alloc(scratch, 2 * patches, sizeof *s->nextLitPoint);
     s->taskRays = vplArena_AllocZero(scratch, tasks, sizeof *s->taskRays);
@@ -199,17 +200,20 @@ static vplResult listSides(const vplLitSearch* s, vplPatchSides* sides)
         count += s->open[i] != 0;
     }
     vplPatchSide* list = vplArena_Alloc(sides->arena, (size_t)count, sizeof *list);
-    int* ofPatch = vplArena_Alloc(sides->arena, 2 * (size_t)patchCount, sizeof *ofPatch);
+    int *ofPatch = vplArena_Alloc(sides->arena, 2 * (size_t)patchCount, sizeof *ofPatch),
+        *hits = vplArena_Alloc(sides->arena, (size_t)count, sizeof *hits);
     TRY(vplArena_Check(sides->arena));
     for (int i = 0; i < 2 * patchCount; i++) {
         ofPatch[i] = -1;
         if (s->open[i] != 0) {
             list[sides->count] = makeSide(s->patches, i / 2, i & 1, s->open[i]);
+            hits[sides->count] = s->hits[i];
             ofPatch[i] = sides->count++;
         }
     }
     sides->sides = list;
     sides->ofPatch = ofPatch;
+    sides->hits = hits;
     sides->rays = s->rays;
     return VPL_SUCCESS;
 }

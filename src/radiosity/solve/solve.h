@@ -49,7 +49,10 @@ typedef struct vplSolve {
     float* area;                  // shooting
     int next;                     // shooting: the side that shoots next; -1: none
     double change, largest;       // of the last sweep: the largest change and the largest radiosity, W/m^2
-    bool finite;                  // all radiosities are in the range of float
+    double dark;                  // W/m^2: changes of darker sides are fractions of this
+    // Sums of the last sweep over sides and channels: area times the change as a fraction of the radiosity, and area.
+    double relative, weight;
+    bool finite; // all radiosities are in the range of float
 } vplSolve;
 
 // Prepares the first sweep of shooting.

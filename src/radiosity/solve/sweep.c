@@ -16,12 +16,18 @@
 // sums up to rounding, whose bits do not depend on the number of workers.
 enum { BLOCK = VPL_SWEEP_ROWS };
 
-// Updates the sweep's largest change and radiosity.
-static void recordChange(vplSolve* s, double old, double now)
+// Sides that are darker than this fraction of the brightest count as so bright when changes are taken as fractions.
+static const double DARK = 1e-6;
+
+// Adds one channel of side i to the sweep's changes.
+static void recordChange(vplSolve* s, int i, double old, double now)
 {
     const double change = fabs(now - old), size = fabs(now);
+    const double area = (double)s->exchange.transport->sides->sides[i].area;
     s->change = change > s->change ? change : s->change;
     s->largest = size > s->largest ? size : s->largest;
+    s->relative += change > 0 ? area * change / fmax(size, s->dark) : 0;
+    s->weight += area;
     s->finite = s->finite && size <= (double)FLT_MAX;
 }
 
@@ -37,7 +43,7 @@ static vplResult sweepJacobi(vplSolve* s)
     for (int i = 0; i < s->exchange.count; i++) {
         for (int c = 0; c < 3; c++) {
             const float now = (float)reflect(s, i, c, s->exchange.sums[i][c]);
-            recordChange(s, (double)s->radiosity.c[c][i], (double)now);
+            recordChange(s, i, (double)s->radiosity.c[c][i], (double)now);
             s->radiosity.c[c][i] = now;
         }
     }
@@ -68,7 +74,7 @@ static vplResult sweepBlock(vplSolve* s, int first, int end)
         for (int c = 0; c < 3; c++) {
             const double old = (double)s->radiosity.c[c][i];
             const float now = (float)reflect(s, i, c, sum[c]);
-            recordChange(s, old, (double)now);
+            recordChange(s, i, old, (double)now);
             more[i - first][c] = (double)now - old;
             s->radiosity.c[c][i] = now;
         }
@@ -141,7 +147,7 @@ static vplResult sweepShooting(vplSolve* s)
     for (int i = 0; i < count; i++) {
         for (int c = 0; c < 3; c++) {
             const float now = s->shot.c[c][i] + s->unshot.c[c][i];
-            recordChange(s, (double)s->radiosity.c[c][i], (double)now);
+            recordChange(s, i, (double)s->radiosity.c[c][i], (double)now);
             s->radiosity.c[c][i] = now;
         }
     }
@@ -150,7 +156,8 @@ static vplResult sweepShooting(vplSolve* s)
 
 vplResult vplSolve_Sweep(vplSolve* solve)
 {
-    solve->change = solve->largest = 0;
+    solve->dark = DARK * solve->largest;
+    solve->change = solve->largest = solve->relative = solve->weight = 0;
     solve->finite = true;
     return solve->stats.solver == VPL_SOLVER_JACOBI     ? sweepJacobi(solve)
            : solve->stats.solver == VPL_SOLVER_SHOOTING ? sweepShooting(solve)

@@ -34,7 +34,8 @@ static inline vplAreaLights vplAreaLightsOfHits(const vplRun* run)
         return (vplAreaLights){.count = 0};
     }
     const int left = run->plan->trianglesPerPoint > 0 ? area->count - area->skyCount : 0;
-    return (vplAreaLights){area->lights + left, area->count - left, area->skyCount, area->minDistance};
+    vplShadeLight* first = left > 0 ? area->lights + left : area->lights; // NULL where there are none
+    return (vplAreaLights){first, area->count - left, area->skyCount, area->minDistance};
 }
 
 // VPL_STAGE_REFLECTIVE_MAPS: one per emitter.
