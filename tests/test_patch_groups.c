@@ -85,8 +85,7 @@ TEST(EveryTriangleIsInOnePatch, 1)
     vplGeometry_Destroy(g);
 }
 
-// The number of patches is the one asked for within 20 %, from what normals alone demand to a quarter of the triangles, and from
-// their number on: between them, that of triangles of one size jumps.
+// The number of patches is the one asked for within 20 %, from what normals alone demand to four times the triangles.
 TEST(TheCountHolds, 1)
 {
     vplGeometry* g[2] = {buildGeometry(ballRoom(context, 12, 3, 0.5f, 0)), clutter(context, 1)};
