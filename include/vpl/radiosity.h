@@ -59,7 +59,7 @@ typedef struct vplPatchSides {
     int64_t rays;           // cast to find the sides
     struct vplArena* arena; // owns the arrays
     vplContext* context;
-    const int* hits; // per side: how many of the particles that searched for sides hit it; NULL: not known
+    const int* hits; // per side: hits of the particles that search for sides; NULL: not known
 } vplPatchSides;
 
 // Finds the sides that light reaches: by particles from all light sources, by rays from the viewpoints, and
@@ -200,9 +200,9 @@ enum { VPL_MAX_SWEEPS = 1 << 20 };
 typedef struct vplSolveDef {
     vplSolver solver; // default VPL_SOLVER_GAUSS_SEIDEL
     int iterations;   // the most sweeps, [0, VPL_MAX_SWEEPS]; default 100
-    // Stops when the largest change of a sweep is at most this fraction of the largest radiosity, and sides change on average by
-    // at most 50 times this fraction of their own, so that dark places are complete, too; [0, 1], default 1e-4. 0: stops
-    // only when nothing changes, and never warns.
+    // E in [0, 1], default 1e-4. Sweeps end when the largest change is at most E times the largest radiosity, and the mean over
+    // the area of each side's relative change is at most 50 E, so that dark places are complete, too. 0: sweeps end
+    // when nothing changes, and there is no warning.
     double residual;
     // The next frame goes on sweeping: stopping before `residual` is no warning. Default false.
     bool continues;

@@ -18,10 +18,10 @@ typedef struct vplGroupTree vplGroupTree;
 
 vplResult vplGroupTree_Build(vplArena* scratch, const vplGeometry* geometry, vplGroupTree** treeOut);
 
-// The length T that groups are formed for. Where many boxes are alike and T decides about all at once, those of the first
-// `finerCount` triangles of the tree take a smaller one.
+// The largest diagonal of a group's box, T. Where many boxes are equal, one T groups either all of them or none, so the first
+// `finerCount` triangles, in the tree's order, use a smaller T.
 typedef struct vplGroupLength {
-    double length, finer; // metres
+    double length, finer; // T, and the smaller T, metres
     int finerCount;
 } vplGroupLength;
 

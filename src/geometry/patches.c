@@ -106,28 +106,32 @@ static int countAll(const Roots* roots, double square, int rounds, int enough)
 
 // ---- groups
 
-static int countWith(Roots* roots, double length, int rounds, int enough)
+static int countWith(Roots* roots, const vplGroupLength* groups, int rounds, int enough)
 {
-    roots->groupCount = vplGroupTree_Group(roots->tree, &(vplGroupLength){.length = length});
-    return countAll(roots, length * length, rounds, enough);
+    roots->groupCount = vplGroupTree_Group(roots->tree, groups);
+    return countAll(roots, groups->length * groups->length, rounds, enough);
 }
 
-// Where the number of patches jumps between two lengths, as where all boxes are alike: finds how many triangles take the smaller one.
-static vplGroupLength groupParts(Roots* roots, int count, int rounds, vplGroupLength length)
+static int countFor(Roots* roots, double length, int rounds, int enough)
+{
+    return countWith(roots, &(vplGroupLength){.length = length}, rounds, enough);
+}
+
+// Finds for how many triangles the smaller T must be used, if the number of patches jumps between the two, as where all boxes are equal.
+static vplGroupLength groupParts(Roots* roots, int count, int rounds, vplGroupLength groups)
 {
     int low = 0;
-    length.finerCount = roots->geometry->triangleCount;
-    while (length.finerCount - low > 1) {
-        const int middle = low + (length.finerCount - low) / 2;
-        const vplGroupLength parts = {length.length, length.finer, middle};
-        roots->groupCount = vplGroupTree_Group(roots->tree, &parts);
-        if (countAll(roots, length.length * length.length, rounds, count) < count) {
-            low = middle;
+    groups.finerCount = roots->geometry->triangleCount;
+    while (groups.finerCount - low > 1) {
+        vplGroupLength fewer = groups;
+        fewer.finerCount = low + (groups.finerCount - low) / 2;
+        if (countWith(roots, &fewer, rounds, count) < count) {
+            low = fewer.finerCount;
         } else {
-            length.finerCount = middle;
+            groups = fewer;
         }
     }
-    return length;
+    return groups;
 }
 
 // The T that gives about `count` patches, with groups of triangles. Halves the interval in which it lies until the count
@@ -136,16 +140,16 @@ static vplGroupLength groupLength(Roots* roots, int count, int rounds)
 {
     const int enough = count < VPL_MAX_PATCHES / 2 ? 2 * count : VPL_MAX_PATCHES;
     double high = vplGroupTree_Diagonal(roots->tree) * (1 + 0x1p-15), low = high;
-    int fewer = countWith(roots, high, rounds, enough), more = fewer;
+    int fewer = countFor(roots, high, rounds, enough), more = fewer;
     for (int i = 0; i < VPL_MAX_PATCH_ROUNDS && more < count; i++) {
         high = low;
         fewer = more;
         low *= 0.5;
-        more = countWith(roots, low, rounds, enough);
+        more = countFor(roots, low, rounds, enough);
     }
     while (high - low > low * 0x1p-18 && more > count + count / 50 && fewer < count - count / 50) {
         const double middle = 0.5 * (low + high);
-        const int found = countWith(roots, middle, rounds, enough);
+        const int found = countFor(roots, middle, rounds, enough);
         if (found < count) {
             high = middle;
             fewer = found;

@@ -57,8 +57,8 @@ struct vplRenderer {
     int edgeTries;             // with the passes so far, that left more error than was asked for
     double
         coarserSquare; // squared error beside edges of the plan before, which had fewer patches; 0: there was none
-    // Rays that patches may still cost: those that virtual lights or paths were foreseen to need, less those of patches that were in
-    // vain. 0: patches were not tried; at least 1 afterwards.
+    // The budget of patches, in rays: what virtual lights or paths were foreseen to need, minus what earlier patches cost in vain. 0:
+    // patches were not tried; at least 1 afterwards.
     double lightRays;
     bool stale;             // results of stages are not those of the last pass
     double start, cpuStart; // ms
@@ -153,8 +153,8 @@ vplResult vplRefineTruth(vplRenderer* renderer);
 // *moreOut: the truth is better known now, or pixels at edges are traced, so that the picture is to be judged again.
 vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
 
-// The same decision after the first pass, when noise and bias are not known apart. It traces pixels at edges if that costs little beside
-// the pass and is likely to prove the error that was asked for, or goes on with patches if they may need far fewer rays.
+// Decides after the first pass, from which noise and bias cannot be told apart. Traces pixels at edges if that costs little compared
+// with the pass and is likely to prove the error that was asked for, or goes on with patches if they may need far fewer rays.
 vplResult vplReconsiderEarly(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
 
 // After a pass of path tracing that --method auto has chosen for an error: goes back to virtual lights where the noise of the

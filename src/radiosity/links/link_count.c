@@ -65,8 +65,8 @@ static double sizeOf(const Count* c, int i)
     return c->partWeights[i] * ((double)nodes[pair->p].count + nodes[pair->q].count);
 }
 
-// Goes on with the next level: with all of its parts if they are at most MOST, else with a systematic sample, in which the probability
-// of a part is in proportion to its size.
+// Goes on with the next level. At most MOST parts are all kept. Of more, a systematic sample is kept: the probability of a part
+// is in proportion to sizeOf.
 static void descend(Count* c, uint64_t level)
 {
     const double start = (double)vplUnitFloat(vplRandomAt(c->work.def->seed, STREAM, level).v[0]);

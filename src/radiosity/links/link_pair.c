@@ -24,10 +24,10 @@ static const double MANY_PAIRS = 16;
 // The fraction of a pair's bound, beyond the estimate, that counts as an error, since points miss peaks.
 static const double PEAK = 0.05;
 
-// Dim sides look for light from others by so many rays each, and all together.
+// Each dim side casts about RAYS_OF_DIM_SIDE rays to search for light from sides that are not dim; all together at most MOST_DIM_RAYS.
 static const double RAYS_OF_DIM_SIDE = 16384, MOST_DIM_RAYS = 0x1p26;
 
-// An opening between a dim group and another is small if it lets at most this fraction of the rays through.
+// What is between a dim group and one that is not dim counts as a small opening if at most this fraction of the rays pass.
 static const double SMALL_OPENING = 0.25;
 
 // Up to so many sides a link may err by as much as is asked for; beyond by less, as one over the root of their number.
@@ -59,8 +59,10 @@ vplLinkWork vplLinkWork_Make(const vplPatchSides* sides, const struct vplLinkTre
     int dim = 0;
     for (int i = 0; i < tree->nodeCount; i++) {
         const vplLinkNode* node = &tree->nodes[i];
-        dim += node->dim && node->children < 0;
-        area += node->dim && node->children < 0 ? (double)node->area : 0;
+        if (node->dim && node->children < 0) {
+            area += (double)node->area;
+            dim++;
+        }
     }
     return (vplLinkWork){.sides = sides,
                          .tree = tree,
@@ -178,16 +180,18 @@ static void keep(const vplJudgedPair* pair, const Measure* m)
     }
 }
 
-// How many rays look for light between two nodes of which one is dim; 0: neither is, or both are. `mean`: of the points.
+// The number of rays between a dim node and one that is not dim, in proportion to their form factor and to the area of the dim node. 0
+// if both are dim, or neither is. `mean`: of the terms of all pairs of points, 1/m^2.
 static double dimRays(const vplJudgedPair* pair, double mean)
 {
     const double areas = (double)pair->p->area * (double)pair->q->area;
     return pair->p->dim != pair->q->dim ? pair->work->dimRays * areas * mean : 0;
 }
 
-// Decides about groups of which one is dim: what comes through a small opening is kept as the rays find it, whose number is known
-// beforehand. If pairs whose rays find light were divided and looked at again, while others are dropped, a room behind a keyhole
-// would lose half of its light or more. False if more than a small opening is between.
+// Decides about a dim group and one that is not dim, if only a small opening is between them; returns false otherwise. The number of rays
+// is fixed before the first is cast, and the link carries what they find. Rays must not choose which pairs are divided and measured
+// again: pairs that no ray passes are dropped, most rays of the others' parts are blocked, and half of the light behind
+// a keyhole was lost in this way.
 static bool measureDim(const vplJudgedPair* pair, double rays, vplLinkTerms* terms)
 {
     const int few = VPL_RAY_PACKET;
@@ -201,7 +205,7 @@ static bool measureDim(const vplJudgedPair* pair, double rays, vplLinkTerms* ter
     if (first.visible > SMALL_OPENING * first.open) {
         return false;
     }
-    vplCastPairRays(pair, terms, few, few + count, &seen); // others, so that those above bias nothing
+    vplCastPairRays(pair, terms, few, few + count, &seen); // new rays: the first ones chose
     vplDarkenTerms(&seen, terms);
     Measure m = measureOf(pair, terms);
     const double mean = seen.visible / count, scale = m.mean > 0 ? mean / m.mean : 0;
@@ -251,7 +255,8 @@ static void measureGroups(const vplJudgedPair* pair, double bound, vplLinkTerms*
         answer->verdict = bound <= TINY * allowed ? VPL_LINK_NONE : divideLarger(pair);
         return;
     }
-    if (pair->p->dim != pair->q->dim && measureDim(pair, dimRays(pair, m.mean), terms)) {
+    const double rays = dimRays(pair, m.mean);
+    if (rays > 0 && measureDim(pair, rays, terms)) {
         return;
     }
     vplLinkSeen seen = {.open = 0};

@@ -26,16 +26,18 @@ static const double UNEVEN = 0.1;
 // Sides of a group lie in one plane if their corners are within this fraction of its radius of it.
 static const double FLAT = 1e-5;
 
-// Groups are dim if particles hit them less than DIM times as often as all sides on average, which shows only where the average would
-// be LEAST_HITS. Parts of a dim group are dim.
+// A group is dim if it has less than DIM times the particle hits that the mean over all sides predicts for its area. Groups for which
+// fewer than LEAST_HITS are predicted are too small to tell; they are dim if their parent is.
 static const double DIM = 1.0 / 32, LEAST_HITS = 128;
 
 typedef struct Build {
-    const vplPatchSides* sides;
+    const vplPatchSide* sides;
+    const vplPatches* patches;
+    const int* hits; // of particles, per side
     struct vplLinkTree* tree;
-    double mean;  // expected radiosity, W/m^2; 0: nothing emits
-    double hits;  // expected, of particles, per m^2
-    int* scratch; // one per side
+    double mean;     // expected radiosity, W/m^2; 0: nothing emits
+    double meanHits; // of particles per m^2; 0: not known
+    int* scratch;    // one per side
 } Build;
 
 // The keys that groups can be divided by: centre, normal and emission of a side.
@@ -59,7 +61,7 @@ static Range rangeOf(const Build* b, const vplLinkNode* node)
         range.low[k] = INFINITY;
         range.high[k] = -INFINITY;
         for (int i = 0; i < node->count; i++) {
-            const float key = keyOf(&b->sides->sides[b->tree->order[node->first + i]], k);
+            const float key = keyOf(&b->sides[b->tree->order[node->first + i]], k);
             range.low[k] = key < range.low[k] ? key : range.low[k];
             range.high[k] = key > range.high[k] ? key : range.high[k];
         }
@@ -79,12 +81,12 @@ static void nextCorner(const Build* b, const vplPatchSide* side, Corner* c)
 {
     c->left--;
     if (c->left > 0) {
-        const vplPatchParts parts = vplPatches_GetParts(b->sides->patches, side->patch);
+        const vplPatchParts parts = vplPatches_GetParts(b->patches, side->patch);
         const int at = 3 * parts.count - c->left, node = parts.nodes[at / 3];
-        c->at = parts.count > 1 ? b->sides->patches->positions[b->sides->patches->nodes[node].corners[at % 3]]
+        c->at = parts.count > 1 ? b->patches->positions[b->patches->nodes[node].corners[at % 3]]
                                 : side->corners[at];
         if (at % 3 == 0) {
-            const vplVec3 n = b->sides->patches->geometry->normals[node];
+            const vplVec3 n = b->patches->geometry->normals[node];
             c->normal = side->back ? vplNegate(n) : n;
         }
     }
@@ -92,10 +94,10 @@ static void nextCorner(const Build* b, const vplPatchSide* side, Corner* c)
 
 static Corner firstCorner(const Build* b, const vplPatchSide* side)
 {
-    if (!vplPatches_IsGroup(b->sides->patches, side->patch)) {
+    if (!vplPatches_IsGroup(b->patches, side->patch)) {
         return (Corner){side->corners[0], side->normal, 3};
     }
-    Corner c = {.left = 3 * vplPatches_GetParts(b->sides->patches, side->patch).count + 1};
+    Corner c = {.left = 3 * vplPatches_GetParts(b->patches, side->patch).count + 1};
     nextCorner(b, side, &c);
     return c;
 }
@@ -130,10 +132,10 @@ static void sumNode(const Build* b, vplLinkNode* node)
     float least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
     double normal[3] = {0}, middle[3] = {0}, area = 0, emitted = 0;
     for (int i = 0; i < node->count; i++) {
-        const vplPatchSide* s = &b->sides->sides[b->tree->order[node->first + i]];
+        const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
         area += (double)s->area;
         emitted += (double)s->area * vplRgbMean(s->emission);
-        const vplVec3 at = middleOf(s, vplPatches_IsGroup(b->sides->patches, s->patch));
+        const vplVec3 at = middleOf(s, vplPatches_IsGroup(b->patches, s->patch));
         for (int axis = 0; axis < 3; axis++) {
             const float x = vplComponent(at, axis);
             least[axis] = x < least[axis] ? x : least[axis];
@@ -164,16 +166,16 @@ static void sumNode(const Build* b, vplLinkNode* node)
     const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     node->normal = length > 1e-3 * area ? vplVec((float)(normal[0] / length), (float)(normal[1] / length),
                                                  (float)(normal[2] / length))
-                                        : b->sides->sides[b->tree->order[node->first]].normal;
+                                        : b->sides[b->tree->order[node->first]].normal;
 }
 
 // Radius, spread of normals and flatness.
 static void measureNode(const Build* b, vplLinkNode* node)
 {
-    const vplPatchSide* firstSide = &b->sides->sides[b->tree->order[node->first]];
+    const vplPatchSide* firstSide = &b->sides[b->tree->order[node->first]];
     double radius = 0, cosine = 1, turn = 1, height = 0, turned = 0;
     for (int i = 0; i < node->count; i++) {
-        const vplPatchSide* s = &b->sides->sides[b->tree->order[node->first + i]];
+        const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
         turn = fmin(turn, (double)vplDot(s->normal, node->normal));
         for (Corner c = firstCorner(b, s); c.left > 0; nextCorner(b, s, &c)) {
             const double towards = (double)vplDot(c.normal, node->normal);
@@ -193,7 +195,7 @@ static void measureNode(const Build* b, vplLinkNode* node)
     node->cosSpread = (float)cosine;
     node->cosTurn = (float)turn;
     node->sinSpread = (float)sqrt(1 - cosine * cosine);
-    node->group = node->count == 1 && vplPatches_IsGroup(b->sides->patches, firstSide->patch);
+    node->group = node->count == 1 && vplPatches_IsGroup(b->patches, firstSide->patch);
     node->flat = (node->count == 1 && !node->group) || (turned <= FLAT && height <= FLAT * radius);
 }
 
@@ -205,7 +207,7 @@ static int divideAt(const Build* b, const vplLinkNode* node, int key, float midd
     int* order = b->tree->order + node->first;
     int before = 0, after = 0;
     for (int i = 0; i < node->count; i++) {
-        if (keyOf(&b->sides->sides[order[i]], key) < middle) {
+        if (keyOf(&b->sides[order[i]], key) < middle) {
             order[before++] = order[i];
         } else {
             b->scratch[after++] = order[i];
@@ -240,15 +242,15 @@ static int halve(const Build* b, const vplLinkNode* node, int depth)
 
 static bool isDim(const Build* b, const vplLinkNode* node)
 {
-    const double expected = b->hits * (double)node->area;
+    const double expected = b->meanHits * (double)node->area;
     double hits = 0;
     for (int i = 0; i < node->count && expected >= LEAST_HITS; i++) {
-        hits += b->sides->hits[b->tree->order[node->first + i]];
+        hits += b->hits[b->tree->order[node->first + i]];
     }
     return expected >= LEAST_HITS && hits < DIM * expected;
 }
 
-// Builds the tree below a node whose sides are known, and whose parent may be dim.
+// Builds the tree below a node whose sides are known. node->dim: its parent is dim.
 static void buildNode(const Build* b, int index, int depth)
 {
     struct vplLinkTree* tree = b->tree;
@@ -284,8 +286,8 @@ static double expectedRadiosity(const vplPatchSides* sides)
     return emitted > 0 ? emitted / (lost > 0.1 * area ? lost : 0.1 * area) : 0;
 }
 
-// How many particles hit a square metre of all sides, on average.
-static double expectedHits(const vplPatchSides* sides)
+// The number of particle hits per m^2, as a mean over all sides.
+static double meanHits(const vplPatchSides* sides)
 {
     double hits = 0, area = 0;
     for (int i = 0; i < sides->count && sides->hits != NULL; i++) {
@@ -314,7 +316,9 @@ vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct 
     if (sides->count > 0) {
         tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = sides->count};
         tree->nodeCount = 1;
-        buildNode(&(Build){sides, tree, expectedRadiosity(sides), expectedHits(sides), scratch}, 0, 0);
+        const Build build = {sides->sides,    sides->patches, sides->hits, tree, expectedRadiosity(sides),
+                             meanHits(sides), scratch};
+        buildNode(&build, 0, 0);
     }
     tree->areaUpTo[0] = 0;
     for (int i = 0; i < sides->count; i++) {

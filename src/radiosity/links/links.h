@@ -14,7 +14,7 @@ typedef struct vplLinkNode {
     int first, count; // in vplLinkTree.order
     bool flat;        // all sides are in one plane, so none sees another
     bool group;       // one side of a group of triangles
-    bool dim;         // particles found it much darker than the mean
+    bool dim;         // far fewer particles than the mean hit it (link_tree.c)
     float area;
     float brightness;           // expected radiosity over the expected mean of all sides; at least 1
     vplVec3 low, high, centre;  // bounds, metres, and their centre
@@ -85,12 +85,12 @@ typedef struct vplLinkWork {
     const struct vplLinkTree* tree;
     const vplLinkDef* def;
     double allowed;        // error of one link
-    double dimRays;        // per m^2 of dim sides: they look for light from others
+    double dimRays;        // per m^2 of dim sides: rays that search for light from sides that are not dim
     vplLinkPoints* points; // of each node
     const int* leafAt; // the node of each side, in the tree's order; NULL: sides are not tried by themselves
 } vplLinkWork;
 
-// Without points.
+// Everything but `points` and `leafAt`.
 vplLinkWork vplLinkWork_Make(const vplPatchSides* sides, const struct vplLinkTree* tree,
                              const vplLinkDef* def);
 

@@ -131,7 +131,7 @@ static int markLit(const Batch* b)
         if (hit->side < 0) {
             continue;
         }
-        s->hits[hit->side] += i % VERTICES > 0; // not where it starts, on an area light
+        s->hits[hit->side] += i % VERTICES > 0; // the first vertex is a start, not a hit
         if (hit->isSure && s->open[hit->side] == 0) {
             s->litPoint[hit->side] = hit->point;
             s->open[hit->side] = VPL_ALL_CELLS;

@@ -21,7 +21,7 @@ typedef struct vplLitSearch {
     const vplEmission* emission;
     float* heights;     // of offset points, per patch, metres
     uint16_t* open;     // per side: 0 if it is not lit yet, else all cells or, at the end, its open cells
-    int* hits;          // per side: particles that hit it
+    int* hits;          // per side: hits of particles, but not the starts of their paths
     vplVec3* litPoint;  // per side: an offset point that is lit; undefined where `open` is 0
     uint16_t* nextOpen; // the results of the current pass
     vplVec3* nextLitPoint;
@@ -85,7 +85,7 @@ typedef struct vplLitHit {
     vplVec3 normal; // of the side
     int side;       // -1: none
     int triangle;
-    bool isSure; // the path up to this hit was tested again, and the side was not lit before
+    bool isSure; // the side was not lit before, and the path up to this hit was confirmed
 } vplLitHit;
 
 // False if the ray hits nothing.

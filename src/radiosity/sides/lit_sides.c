@@ -19,7 +19,8 @@ enum {
     MOST_DARK_PASSES = 1 << 10
 };
 
-// The distance between a sample and the points next to it, in heights of its offset point.
+// The distance from a sample's offset point to the two points beside it (isBroad), as a multiple of the height of the offset point
+// above the surface.
 static const float WIDTH = 4;
 
 // ---- one side
@@ -78,7 +79,7 @@ static void testLight(const vplLitSearch* s, int side, int64_t* rays)
     }
 }
 
-// True if two points next to the sample are lit as well. A ray that leaks through a seam between surfaces lights one point only.
+// True if `from` also lights two points beside the sample. A ray that leaks through a seam between surfaces lights a single point.
 static bool isBroad(const vplLitSearch* s, const vplLitSample* sample, vplVec3 from, int64_t* rays)
 {
     const float step = WIDTH * s->heights[sample->side / 2];

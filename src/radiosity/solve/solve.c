@@ -21,8 +21,8 @@ static const double DIVERGES = 1 + 1e-4;
 // of reflectance 0.999 a residual of 1e-4 leaves out 5 %. A share above this one and SLOW residuals is a warning.
 static const double MISSING = 0.01, SLOW = 10;
 
-// Sweeps go on until changes are on average at most this many residuals of each side's own radiosity. At the end of a long corridor,
-// where sides are ten thousand times darker than the brightest, sweeps that ended with the brightest left out a quarter of the light.
+// Sweeps go on until the mean relative change is at most this many residuals. The largest change alone is that of the brightest sides:
+// the end of a long corridor is ten thousand times darker, and had three quarters of its light.
 static const double DARK_RESIDUALS = 50;
 
 vplSolveDef vplDefaultSolveDef(void)
@@ -119,9 +119,8 @@ static void warnOfMissingLight(const vplSolve* s, bool done, double shrink)
     }
     if (residual <= wanted) {
         vplLog(context, VPL_LOG_WARNING,
-               "radiosity ended after %d sweeps, the last of which changed dark sides by %.2g %% on average; "
-               "allow more sweeps "
-               "(--iterations)",
+               "radiosity ended after %d sweeps, the last of which changed sides by %.2g %% on average; "
+               "allow more sweeps (--iterations)",
                s->stats.iterations, 100 * s->relative / s->weight);
         return;
     }

@@ -49,8 +49,8 @@ typedef struct vplSolve {
     float* area;                  // shooting
     int next;                     // shooting: the side that shoots next; -1: none
     double change, largest;       // of the last sweep: the largest change and the largest radiosity, W/m^2
-    double dark;                  // W/m^2: changes of darker sides are fractions of this
-    // Sums of the last sweep over sides and channels: area times the change as a fraction of the radiosity, and area.
+    double dark;                  // W/m^2: the least radiosity that a change is divided by
+    // Sums over all sides and channels of the last sweep: relative change times area, and area. Their ratio is the mean relative change.
     double relative, weight;
     bool finite; // all radiosities are in the range of float
 } vplSolve;

@@ -16,10 +16,10 @@
 // sums up to rounding, whose bits do not depend on the number of workers.
 enum { BLOCK = VPL_SWEEP_ROWS };
 
-// Sides that are darker than this fraction of the brightest count as so bright when changes are taken as fractions.
+// A relative change is the change over the side's radiosity, or over this fraction of the largest radiosity if the side is darker.
 static const double DARK = 1e-6;
 
-// Adds one channel of side i to the sweep's changes.
+// Adds the change of one channel of side i to the sweep's largest and mean changes.
 static void recordChange(vplSolve* s, int i, double old, double now)
 {
     const double change = fabs(now - old), size = fabs(now);
