@@ -3,6 +3,8 @@
 // ends them.
 #include "render/renderer.h"
 
+#include "render/planner/patch_plan.h"
+
 #include "base/clock.h"
 #include "base/team.h"
 #include "render/show.h"
@@ -67,6 +69,9 @@ static void beginPlan(vplRenderer* r, const NextPlan* next, bool coarse)
     r->planStart = next->start;
     r->planRays = next->rays;
     r->coarse = coarse;
+    if (r->lightRays == 0 && r->plan->options.method == VPL_METHOD_RADIOSITY) {
+        r->lightRays = vplForeseenLightRays(r->plan);
+    }
 }
 
 vplResult vplRenderer_Plan(vplRenderer* r, const vplRenderOptions* options, bool coarse)

@@ -148,6 +148,10 @@ vplResult vplJudge(vplRenderer* renderer, double asked, bool plansAgain, double 
 // Traces as many paths of the truth again as there are, and keeps the spread that it had.
 vplResult vplRefineTruth(vplRenderer* renderer);
 
+// Begins a truth with so many times as many pixels.
+#define VPL_WIDER_TRUTH 4
+vplResult vplWidenTruth(vplRenderer* renderer);
+
 // After the truth was asked: goes on with another plan where that promises less error in the time that is left (asked is
 // 0), or the error in less time, and ends a render that more passes do not improve.
 // *moreOut: the truth is better known now, or pixels at edges are traced, so that the picture is to be judged again.

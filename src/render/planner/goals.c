@@ -212,17 +212,39 @@ static bool isClear(const vplRenderer* r, double asked, bool plansAgain, double 
 
 // A picture of patches has no noise, and few pixels have most of its error. More pixels are compared for errors below 4 %, and after
 // patches took over from virtual lights.
-static bool needsManyPixels(const vplRenderer* r)
+static int countTruthPixels(const vplRenderer* r)
 {
     const vplRenderOptions* o = &r->plan->options;
-    return o->method == VPL_METHOD_RADIOSITY && (o->stop.maxError < 0.04 || r->lightRays > 0);
+    const bool many = o->method == VPL_METHOD_RADIOSITY && (o->stop.maxError < 0.04 || r->lightRays > 0);
+    return many ? VPL_MANY_TRUTH_PIXELS : VPL_TRUTH_PIXELS;
 }
 
 vplResult vplRefineTruth(vplRenderer* r)
 {
-    const double spread = r->judged.spread;
+    const double spread = r->judged.spread, start = vplClockMs();
     TRY(vplTruth_Refine(&r->runner.run, r->truth));
     r->spreadBefore = spread;
+    vplRun_AddTime(&r->runner.run, "truth", start);
+    return VPL_SUCCESS;
+}
+
+vplResult vplWidenTruth(vplRenderer* r)
+{
+    vplImage* image = NULL;
+    vplTruth* wider;
+    const double start = vplClockMs();
+    TRY(vplRenderer_Resolve(r, &image));
+    const vplResult result =
+        vplTruth_Create(&r->runner.run, image, VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth), &wider);
+    vplImage_Destroy(image);
+    TRY(result);
+    vplLog(r->runner.run.context, VPL_LOG_INFO, "compares %d pixels with paths instead of %d",
+           vplTruth_CountPixels(wider), vplTruth_CountPixels(r->truth));
+    r->otherRays += vplTruth_Rays(r->truth);
+    vplTruth_Destroy(r->truth);
+    r->truth = wider;
+    r->spreadBefore = INFINITY;
+    vplRun_AddTime(&r->runner.run, "truth", start);
     return VPL_SUCCESS;
 }
 
@@ -233,7 +255,8 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
     vplResult result = vplRenderer_Resolve(r, &image);
     const double start = vplClockMs();
     if (result == VPL_SUCCESS && r->truth == NULL) {
-        result = vplTruth_Create(run, image, needsManyPixels(r), &r->truth);
+        result = vplTruth_Create(run, image, countTruthPixels(r), &r->truth);
+        vplRun_AddTime(run, "truth", start);
     }
     while (result == VPL_SUCCESS) {
         vplJudgePicture(r, image);
@@ -244,7 +267,6 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
     }
     r->judgedNoise = r->error.noise;
     vplImage_Destroy(image);
-    vplRun_AddTime(run, "truth", start);
     return result;
 }
 

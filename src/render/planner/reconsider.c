@@ -47,26 +47,30 @@ static vplResult refine(vplRenderer* r, int finer, bool* doneOut)
     return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }
 
-// The options that were asked for, with so many patches.
-static vplRenderOptions askedWithPatches(const vplRenderer* r, int patches)
+// The options that were asked for, with so many patches, and rays of a gather (negative: auto).
+static vplRenderOptions askedWithPatches(const vplRenderer* r, int patches, int gather)
 {
     vplRenderOptions o = r->asked;
     o.method = VPL_METHOD_RADIOSITY;
     o.lights.shadows = r->plan->options.lights.shadows;
     o.radiosity.patches = patches;
+    o.radiosity.gather = gather;
     o.output.antialias = o.output.antialias == 8 ? 16 : o.output.antialias;
     return o;
 }
 
-// Multiplies the number of patches by VPL_MORE_PATCHES: as often as the way says in plain scenes, once in others. Keeps the error
-// beside edges, with which that of more patches is compared.
+// Multiplies the number of patches by VPL_MORE_PATCHES: as often as the way says in plain scenes; in others once, and the rays of the
+// gather, too. Keeps the error beside edges, with which that of more patches is compared.
 static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
 {
-    int patches = r->plan->options.radiosity.patches;
+    int patches = r->plan->options.radiosity.patches, gather = r->asked.radiosity.gather;
     for (int i = 0; i < way->finer && (i == 0 || r->lightRays == 0); i++) {
         patches *= VPL_MORE_PATCHES;
     }
-    const vplRenderOptions o = askedWithPatches(r, patches);
+    if (gather < 0 && r->lightRays > 0) {
+        gather = VPL_MORE_GATHER * r->plan->options.radiosity.gather;
+    }
+    const vplRenderOptions o = askedWithPatches(r, patches, gather);
     const double spent = (double)r->runner.stats.rays - r->planRays;
     TRY(goOnWith(r, "more patches", &o, doneOut));
     r->coarserSquare = way->rest;
@@ -91,10 +95,6 @@ static vplResult leavePatches(vplRenderer* r, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// The planner tries patches once, if the first try and the passes that it discards cost at most this share of the rays that virtual
-// lights or paths are foreseen to need. The share is small, because patches do not reach the error where little light finds its way.
-static const double SHARE_OF_PATCHES = 1.0 / 3;
-
 // After some passes the planner tries patches only if the error is still more than so many times the one asked for. If it is less,
 // most of the error is at edges, which patches have, too (loft at 2 %: 18 to 31 s instead of 10).
 static const double FAR = 2;
@@ -102,12 +102,12 @@ static const double FAR = 2;
 // Goes on with patches if they may be quicker than another way, which needs `otherwise` rays. `lost`: rays of passes that are discarded.
 static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool* doneOut)
 {
-    const double share = SHARE_OF_PATCHES * otherwise - lost;
+    const double share = VPL_SHARE_OF_PATCHES * otherwise - lost;
     const bool may = r->asked.method == VPL_METHOD_AUTO && r->lightRays == 0 && isfinite(otherwise);
     if (!may || !vplMayTryPatches(&r->runner, r->plan, &r->asked, share)) {
         return VPL_SUCCESS;
     }
-    const vplRenderOptions o = askedWithPatches(r, VPL_FIRST_PATCHES);
+    const vplRenderOptions o = askedWithPatches(r, VPL_FIRST_PATCHES, vplFirstGather(&r->asked));
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
     r->otherRays += vplTruth_Rays(r->truth);
@@ -181,6 +181,16 @@ static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay
 // instead of 12.
 static const double KNOWING = 0.5, UNSURE = 0.1;
 
+// True if more pixels of the truth may prove the error, where more paths do not: its spread is that of the choice of pixels. They will
+// have fewer paths each. All together may cost half of the rays of the way that would be gone otherwise.
+static bool mayWiden(const vplRenderer* r, const vplErrorState* s, double asked, double rays)
+{
+    const double pixels = (double)VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
+    const double all = (double)r->asked.output.width * r->asked.output.height;
+    return s->stuck && s->spread > KNOWN * asked * asked && s->truth < 0.5 * rays &&
+           pixels <= VPL_MOST_TRUTH_PIXELS && pixels <= 0.5 * all;
+}
+
 // The way that needs least for the error.
 static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, bool* doneOut, bool* moreOut)
 {
@@ -197,6 +207,10 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     if (unknown && s->truth < WORTH * fmin(way.rays, paths)) {
         *moreOut = true;
         return vplRefineTruth(r);
+    }
+    if (mayWiden(r, s, asked, fmin(way.rays, paths))) {
+        *moreOut = true;
+        return vplWidenTruth(r);
     }
     const bool leaves = paths < way.rays || way.finer > 0, unsure = s->noise > UNSURE * s->bias;
     if (r->error.total > FAR * asked) {
@@ -241,15 +255,20 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
         return vplProveEdges(r, s, asked, moreOut);
     }
     TRY(vplFindWay(r, s, asked, &way));
-    if (r->coarserSquare > 0 && way.rest > asked * asked && way.rest > 0.5 * r->coarserSquare) {
-        return leavePatches(r, doneOut); // more patches did not help
-    }
-    const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck;
-    if (unknown && s->truth < WORTH_OF_PATCHES * way.rays) {
+    const bool far = way.rest - s->spread > asked * asked, limited = r->lightRays > 0;
+    const bool inVain = r->coarserSquare > 0 && way.rest > 0.5 * r->coarserSquare &&
+                        (limited ? far : way.rest > asked * asked);
+    const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck, proves = !limited || inVain || !far;
+    const double next = limited && s->finer > 0 ? fmin(way.rays, s->finerCost * s->spent) : way.rays;
+    if (proves && unknown && s->truth < WORTH_OF_PATCHES * next) {
         *moreOut = true;
         return vplRefineTruth(r);
     }
-    if (isHopeless(r, s, &way)) {
+    if (proves && limited && mayWiden(r, s, asked, next)) {
+        *moreOut = true;
+        return vplWidenTruth(r);
+    }
+    if (inVain || isHopeless(r, s, &way)) {
         return leavePatches(r, doneOut);
     }
     if (way.finer > 0) {

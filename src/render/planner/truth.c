@@ -12,8 +12,6 @@
 #include <math.h>
 
 enum {
-    FEW_PIXELS = 512,
-    MANY_PIXELS = 1024,
     FIRST_PATHS = 4,            // of each half
     TRUTH_STREAM = 0x80000009u, // of random numbers
     SEED = 0x7472757468         // differs from that of pictures
@@ -109,11 +107,11 @@ void vplTruth_SetPaths(vplTruth* truth, int each)
     truth->paths.done = each;
 }
 
-vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, bool many, vplTruth** truthOut)
+vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, int count, vplTruth** truthOut)
 {
-    const int pixels = picture->width * picture->height, most = many ? MANY_PIXELS : FEW_PIXELS;
+    const int pixels = picture->width * picture->height;
     vplTruth* t;
-    TRY(vplTruth_Open(run, pixels < most ? pixels : most, &t));
+    TRY(vplTruth_Open(run, pixels < count ? pixels : count, &t));
     const vplRandom4 r = vplRandomAt(t->paths.scene.def.seed, TRUTH_STREAM, 0);
     t->paths.count = choosePixels(t, picture, t->paths.count, (double)vplUnitFloat(r.v[0]));
     const vplResult result =

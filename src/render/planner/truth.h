@@ -17,9 +17,12 @@ typedef struct vplJudgement {
     int64_t rays;        // cast for the truth, so far
 } vplJudgement;
 
-// Chooses 512 pixels of the picture (1,024 if `many` is true) and traces the first paths through them. Pixels that differ much from
+// Pixels of a truth: usually, of a picture whose error is in few pixels, and at most.
+enum { VPL_TRUTH_PIXELS = 512, VPL_MANY_TRUTH_PIXELS = 1024, VPL_MOST_TRUTH_PIXELS = 8192 };
+
+// Chooses `count` pixels of the picture, or all if it has fewer, and traces the first paths through them. Pixels that differ much from
 // their neighbours, as at edges, are chosen with a higher probability and have a smaller weight. The run's geometry must outlive it.
-vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, bool many, vplTruth** truthOut);
+vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, int count, vplTruth** truthOut);
 
 // NULL is allowed.
 void vplTruth_Destroy(vplTruth* truth);
