@@ -99,15 +99,16 @@ enum { ENOUGH_LIGHTS = 64 };
 // (19 % reach) leaves 70 to 180 % of error in as much time as 1,000 patches take, which leave 9.
 static const double FEW_REACH = 0.4;
 
-// Rays per pixel by which virtual lights leave an error of 1 there: 26 to 52 in the flat (20, 10 and 5 %).
-static const double HIDDEN_RAYS = 30;
+// Rays per pixel by which virtual lights leave an error of 1, if all lights contribute alike: 26 to 52 in the flat (20, 10 and 5 %),
+// where they are worth 0.046 of as many equal ones.
+static const double HIDDEN_RAYS = 1.4;
 
 double vplForeseenLightRays(const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
     const double error = o->stop.maxError, pixels = (double)o->output.width * o->output.height;
-    const bool hidden = p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH;
-    return error > 0 && hidden ? HIDDEN_RAYS * pixels / (error * error) : 0;
+    const bool hidden = p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH && p->look.worth > 0;
+    return error > 0 && hidden ? HIDDEN_RAYS / p->look.worth * pixels / (error * error) : 0;
 }
 
 // The error that one pass of virtual lights leaves, about; passes grow with the square of a smaller one.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What does the planner cost? tests/bench/planner/cost.py BUILD SIZE GOALS SEEDS SCENE...: renders each scene with some thirty
+"""What does the planner cost? tests/bench/planner/cost.py BUILD SIZE GOALS SEEDS SCENE...: renders each scene with 34
 settings and by --max-error for each goal ("0.2 0.1") and seed, on one thread, and compares all with two path-traced pictures
 whose noise cancels (those of goals.sh; SPP paths per pixel each, default 512). Prints, for each goal, the median of the
 processor time over that of the cheapest setting with an error below the goal, and below the error that was reached.
@@ -16,7 +16,8 @@ from array import array
 from pathlib import Path
 
 SETTINGS = ['--method direct', '--method direct --antialias 8', '--method radiosity --patches 300',
-            '--method radiosity --patches 1000 --antialias 8', '--method radiosity --patches 4000 --antialias 8']
+            '--method radiosity --patches 1000 --antialias 8', '--method radiosity --patches 4000 --antialias 8',
+            '--method radiosity --patches 1000 --gather 16 --antialias 8', '--method radiosity --patches 4000 --gather 64 --antialias 8']
 SETTINGS += [f'--method {method} --particles {n} --interleave {k} --light-shadows ray --antialias {a}'
              for method in ('keller', 'instant-radiosity') for n, k, a in
              ((60, 8, 1), (250, 8, 1), (250, 8, 8), (1000, 8, 1), (1000, 8, 8), (1000, 4, 8), (4000, 8, 8), (4000, 4, 16), (16000, 4, 16))]
