@@ -488,6 +488,22 @@ TEST(LightComesThroughAKeyhole, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
+// A hole of 2 x 3 cm makes a spot of 9 cm. It counted as closed when every dark side had as many samples, and all 65,536.
+TEST(LightComesThroughASmallKeyhole, 2, SLOW)
+{
+    vplScene* scene = openScene(context, "tests/data/small_keyhole.json");
+    vplRenderOptions o = radiosityOptions(8000);
+    o.output.width = 64;
+    o.output.height = 36;
+    for (o.seed = 0; o.seed < 3; o.seed++) {
+        vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
+        assertNear(meanBesideTheHole(image) / 4.75e-6, 1, 0.2, "energy",
+                   (int)o.seed); // measured: 0.88 to 1.11
+        vplImage_Destroy(image);
+    }
+    vplScene_Destroy(scene);
+}
+
 // Five rooms in a row, with openings on alternating sides; the camera is in the last, whose light is a ten-thousandth of the first's.
 // When sweeps ended as soon as the first was complete, the last had 0.95 of its light.
 TEST(SweepsGoOnUntilDarkRoomsAreComplete, 2)

@@ -28,8 +28,10 @@ typedef struct vplLitSearch {
     uint8_t *fromEye,
         *nextFromEye; // per side: 1 if a viewpoint sees it, or a side that one sees, but light was not found
     int64_t* taskRays;
-    double meanArea; // of patches
-    int pass;        // selects other random numbers in each pass
+    double meanArea;    // of patches
+    int pass;           // selects other random numbers in each pass
+    double darkSamples; // of each dark side that lacks samples, so far
+    bool spreads;       // the last pass found light on dark sides, so that others may have it from them
     int64_t rays;
     vplContext* context;
 } vplLitSearch;

@@ -7,7 +7,6 @@
 #include "radiosity/sides/lit_search.h"
 #include "radiosity/sides/side.h"
 
-#include <limits.h>
 #include <string.h>
 
 enum {
@@ -15,8 +14,8 @@ enum {
     GATHERS = 4,  // rays from each sample
     LEAST_PASSES = 4,
     MOST_PASSES = 16,       // each pass finds one more room behind rooms
-    DARK_SAMPLES = 1 << 16, // on all surfaces of the scene; dark sides get them in proportion to their area
-    MOST_DARK_PASSES = 1 << 10
+    DARK_SAMPLES = 1 << 18, // on all surfaces of the scene; dark sides get them in proportion to their area
+    MOST_DARK_PASSES = 1 << 14
 };
 
 // The distance from a sample's offset point to the two points beside it (isBroad), as a multiple of the height of the offset point
@@ -92,10 +91,21 @@ static bool isBroad(const vplLitSearch* s, const vplLitSample* sample, vplVec3 f
     return broad;
 }
 
+// True if a dark side has had samples in proportion to its area. The triangles of groups are small enough for few samples.
+static bool hasItsShare(const vplLitSearch* s, int side)
+{
+    const int patch = side / 2;
+    return vplPatches_IsGroup(s->patches, patch) ||
+           s->darkSamples * s->geometry->area >= DARK_SAMPLES * vplPatches_Area(s->patches, patch);
+}
+
 // Tests whether light reaches a side that was found from a viewpoint alone. The result is in nextFromEye.
 static void testFromEye(const vplLitSearch* s, int side, int64_t* rays)
 {
     s->nextFromEye[side] = s->fromEye[side];
+    if (!s->fromEye[side] || (!s->spreads && hasItsShare(s, side))) {
+        return;
+    }
     for (int i = 0; i < VPL_PATCH_CELLS && s->nextFromEye[side] != 0; i++) {
         vplLitSample sample = {.side = side, .cell = i, .index = s->pass % VPL_LIT_SAMPLES};
         vplVec3 from;
@@ -166,40 +176,35 @@ static int countUnlit(const vplLitSearch* s)
     return unlit;
 }
 
-// Counts the sides that viewpoints see and no light was found to reach. *areaOut: of those that are no groups, whose triangles are
-// small enough for few samples.
-static int countDark(const vplLitSearch* s, double* areaOut)
+// Counts the sides that viewpoints see and no light was found to reach, and those of them that lack samples.
+static int countDark(const vplLitSearch* s, int* lackingOut)
 {
     int count = 0;
-    *areaOut = 0;
+    *lackingOut = 0;
     for (int side = 0; side < 2 * s->patches->patchCount; side++) {
-        if (s->fromEye[side]) {
-            count++;
-            *areaOut += vplPatches_IsGroup(s->patches, side / 2) ? 0 : vplPatches_Area(s->patches, side / 2);
-        }
+        count += s->fromEye[side] != 0;
+        *lackingOut += s->fromEye[side] != 0 && !hasItsShare(s, side);
     }
     return count;
 }
 
 // Closes sides that viewpoints see but light does not reach, as in a sealed room. Their form factors with lit sides would be 0
 // but for rounding at seams. Without light sources all sides stay open. Each pass casts up to 80 rays from each dark side. Passes go
-// on while they find lit sides, and until the dark area has its share of DARK_SAMPLES: light through a keyhole makes a spot that
+// on while they find lit sides, and on each side until it has its share of DARK_SAMPLES: light through a keyhole makes a spot that
 // 16 samples of a large side miss. At the end the number of the pass is set back, so that later steps draw the same random numbers.
 static vplResult closeDarkRooms(vplLitSearch* s)
 {
     const int sides = 2 * s->patches->patchCount, pass = s->pass;
-    double area, samples = 0;
-    int left = s->emission->sourceCount > 0 ? countDark(s, &area) : 0, before = INT_MAX;
-    for (int i = 0; left > 0 && i < MOST_DARK_PASSES; i++) {
+    int lacking, left = s->emission->sourceCount > 0 ? countDark(s, &lacking) : 0;
+    s->spreads = true; // the first pass tests all sides
+    for (int i = 0; left > 0 && (s->spreads || lacking > 0) && i < MOST_DARK_PASSES; i++) {
+        const int before = left;
         int added;
-        if (left == before && samples * s->geometry->area >= DARK_SAMPLES * area) {
-            break;
-        }
         TRY(vplLitSearch_ForAllSides(s, testFromEye, (const double[2]){0.7, 0.7}, &added));
-        samples += (double)VPL_PATCH_CELLS * left;
         memcpy(s->fromEye, s->nextFromEye, (size_t)sides * sizeof *s->fromEye);
-        before = left;
-        left = countDark(s, &area);
+        s->darkSamples += VPL_PATCH_CELLS;
+        left = countDark(s, &lacking);
+        s->spreads = left < before;
     }
     s->pass = pass;
     for (int side = 0; side < sides && left > 0; side++) {
