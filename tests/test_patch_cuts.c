@@ -495,7 +495,7 @@ TEST(LightComesThroughASmallKeyhole, 2, SLOW)
     vplRenderOptions o = radiosityOptions(8000);
     o.output.width = 64;
     o.output.height = 36;
-    for (o.seed = 0; o.seed < 3; o.seed++) {
+    for (o.seed = 0; o.seed < 2; o.seed++) {
         vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
         assertNear(meanBesideTheHole(image) / 4.75e-6, 1, 0.2, "energy",
                    (int)o.seed); // measured: 0.88 to 1.11

@@ -13,10 +13,7 @@ bool vplChoosePatches(const vplRunner* runner, vplPlan* plan);
 // Patches of a first try instead of virtual lights or paths.
 #define VPL_FIRST_PATCHES 1000
 
-// Rays by which pixels gather the light of a first try, and how many times as many the next try has. Where doors hide lights, light
-// is finer than patches: in the flat 1,000 patches leave 13 % of error without a gather, 9 with 4 rays and 5 with 16, in 0.6, 0.6 and
-// 1.3 s; in the hall 155 % without one and 32 with 16 rays. (320x180)
-int vplFirstGather(const vplRenderOptions* asked);
+// How many times as many rays gather the light of a pixel in the next try, if any do.
 #define VPL_MORE_GATHER 2
 
 // The planner tries patches once, if the first try and the passes that it discards cost at most this share of the rays that virtual

@@ -67,7 +67,7 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     for (int i = 0; i < way->finer && (i == 0 || r->lightRays == 0); i++) {
         patches *= VPL_MORE_PATCHES;
     }
-    if (gather < 0 && r->lightRays > 0) {
+    if (gather < 0 && r->lightRays > 0 && r->plan->options.radiosity.gather > 0) {
         gather = VPL_MORE_GATHER * r->plan->options.radiosity.gather;
     }
     const vplRenderOptions o = askedWithPatches(r, patches, gather);
@@ -107,7 +107,7 @@ static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool*
     if (!may || !vplMayTryPatches(&r->runner, r->plan, &r->asked, share)) {
         return VPL_SUCCESS;
     }
-    const vplRenderOptions o = askedWithPatches(r, VPL_FIRST_PATCHES, vplFirstGather(&r->asked));
+    const vplRenderOptions o = askedWithPatches(r, VPL_FIRST_PATCHES, r->asked.radiosity.gather);
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
     r->otherRays += vplTruth_Rays(r->truth);
