@@ -103,7 +103,7 @@ static int firstGather(const vplRenderOptions* o)
 
 // Rays per pixel by which virtual lights leave an error of 1, if all lights contribute alike: 26 to 52 in the flat (20, 10 and 5 %),
 // where they are worth 0.046 of as many equal ones.
-static const double HIDDEN_RAYS = 1.4;
+static const double HIDDEN_RAYS = 2.4;
 
 double vplForeseenLightRays(const vplPlan* p)
 {

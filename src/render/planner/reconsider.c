@@ -204,12 +204,12 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     TRY(vplFindWay(r, s, asked, &way));
     const double paths = s->paths / (0.9 * asked * asked);
     const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck;
-    const double worth = fmin(WORTH * fmin(way.rays, paths), s->spent); // more passes come first
+    const double worth = fmin(WORTH * fmin(way.rays, paths), 0.5 * s->spent); // more passes come first
     if (unknown && s->truth < worth) {
         *moreOut = true;
         return vplRefineTruth(r);
     }
-    if (mayWiden(r, s, asked, fmin(fmin(way.rays, paths), s->spent))) {
+    if (mayWiden(r, s, asked, fmin(fmin(way.rays, paths), 0.5 * s->spent))) {
         *moreOut = true;
         return vplWidenTruth(r);
     }
