@@ -256,9 +256,9 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
         return vplProveEdges(r, s, asked, moreOut);
     }
     TRY(vplFindWay(r, s, asked, &way));
-    const bool far = way.rest - s->spread > asked * asked, limited = r->lightRays > 0;
-    const bool inVain = r->coarserSquare > 0 && way.rest > 0.5 * r->coarserSquare &&
-                        (limited ? far : way.rest > asked * asked);
+    // In plain scenes (not limited) it costs little to know the error well, and patches that are too coarse cost more.
+    const bool limited = r->lightRays > 0, far = way.rest - (limited ? s->spread : 0) > asked * asked;
+    const bool inVain = r->coarserSquare > 0 && far && way.rest > 0.5 * r->coarserSquare;
     const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck, proves = !limited || inVain || !far;
     const double next = limited && s->finer > 0 ? fmin(way.rays, s->finerCost * s->spent) : way.rays;
     if (proves && unknown && s->truth < WORTH_OF_PATCHES * next) {
