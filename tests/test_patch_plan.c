@@ -205,8 +205,8 @@ TEST(ARenderWithPatchesIsResumedToTheSameBits, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
-// Renders to an error of `error`, which ends with patches: to the bits of a render that began with their plan, also where it was saved
-// after a step.
+// Renders `file` until its error is below `error`. The render must begin with method `first` and end with patches, and its picture must
+// have the bits of a render of the last plan alone, also if the render was saved after a step and resumed.
 static void endWithPatches(vplContext* context, const char* file, double error, vplMethod first)
 {
     vplScene* scene = openScene(context, file);
@@ -263,6 +263,18 @@ static int countPatchSteps(vplRenderer* r, int steps)
     return count;
 }
 
+// Two renders have done the same number of passes, to the same bits.
+static void assertSamePictures(vplRenderer* a, vplRenderer* b)
+{
+    vplImage* images[2];
+    assert_int_equal(vplRenderer_Resolve(a, &images[0]), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Resolve(b, &images[1]), VPL_SUCCESS);
+    assert_int_equal(a->done, b->done);
+    assert_true(vplImage_Hash(images[0]) == vplImage_Hash(images[1]));
+    vplImage_Destroy(images[0]);
+    vplImage_Destroy(images[1]);
+}
+
 // Where a door stands ajar patches err by the light that comes through it: a few are tried once, and virtual lights go on, also
 // where the render was saved in between.
 TEST(PatchesInVainAreTriedOnce, 2, SLOW)
@@ -286,13 +298,7 @@ TEST(PatchesInVainAreTriedOnce, 2, SLOW)
     assert_int_equal(vplRenderer_Create(scene, &o, &loaded), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Load(loaded, path, &done), VPL_SUCCESS); // takes the first step of a plan
     assert_int_equal(countPatchSteps(loaded, STEPS - 1), 0);
-    vplImage *image, *again;
-    assert_int_equal(vplRenderer_Resolve(r, &image), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Resolve(loaded, &again), VPL_SUCCESS);
-    assert_int_equal(r->done, loaded->done);
-    assert_true(vplImage_Hash(image) == vplImage_Hash(again));
-    vplImage_Destroy(image);
-    vplImage_Destroy(again);
+    assertSamePictures(r, loaded);
     vplRenderer_Destroy(r);
     vplRenderer_Destroy(loaded);
     remove(path);
@@ -311,8 +317,8 @@ TEST(ATruthWithMorePixelsIsSaved, 2, SLOW)
     o.output.width = 80;
     o.output.height = 48;
     assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-    for (int i = 0; i < PASSES || r->truth == NULL || r->done == 0;
-         i++) { // a plan that begins has no picture
+    // A plan that begins has no picture yet.
+    for (int i = 0; i < PASSES || r->truth == NULL || r->done == 0; i++) {
         assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
         assert_false(done);
     }
@@ -330,12 +336,7 @@ TEST(ATruthWithMorePixelsIsSaved, 2, SLOW)
         assert_int_equal(r->truth != NULL, loaded->truth != NULL); // another plan has none yet
         assert_true(r->error.bound == loaded->error.bound && ends[0] == ends[1]);
     }
-    vplImage *image, *again;
-    assert_int_equal(vplRenderer_Resolve(r, &image), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Resolve(loaded, &again), VPL_SUCCESS);
-    assert_true(vplImage_Hash(image) == vplImage_Hash(again));
-    vplImage_Destroy(image);
-    vplImage_Destroy(again);
+    assertSamePictures(r, loaded);
     vplRenderer_Destroy(r);
     vplRenderer_Destroy(loaded);
     remove(path);

@@ -3,10 +3,9 @@
 // ends them.
 #include "render/renderer.h"
 
-#include "render/planner/patch_plan.h"
-
 #include "base/clock.h"
 #include "base/team.h"
+#include "render/planner/patch_plan.h"
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"

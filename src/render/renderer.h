@@ -148,9 +148,12 @@ vplResult vplJudge(vplRenderer* renderer, double asked, bool plansAgain, double 
 // Traces as many paths of the truth again as there are, and keeps the spread that it had.
 vplResult vplRefineTruth(vplRenderer* renderer);
 
-// Begins a truth with so many times as many pixels.
+// Replaces the truth by one of about VPL_WIDER_TRUTH times as many pixels, with the first paths through them.
 #define VPL_WIDER_TRUTH 4
 vplResult vplWidenTruth(vplRenderer* renderer);
+
+// Forgets the truth, but not that its rays were cast. The next judgement makes another one.
+void vplForgetTruth(vplRenderer* renderer);
 
 // After the truth was asked: goes on with another plan where that promises less error in the time that is left (asked is
 // 0), or the error in less time, and ends a render that more passes do not improve.

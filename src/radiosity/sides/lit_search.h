@@ -28,10 +28,11 @@ typedef struct vplLitSearch {
     uint8_t *fromEye,
         *nextFromEye; // per side: 1 if a viewpoint sees it, or a side that one sees, but light was not found
     int64_t* taskRays;
-    double meanArea;    // of patches
-    int pass;           // selects other random numbers in each pass
-    double darkSamples; // of each dark side that lacks samples, so far
-    bool spreads;       // the last pass found light on dark sides, so that others may have it from them
+    double meanArea;     // of patches
+    int pass;            // selects other random numbers in each pass
+    uint16_t* darkShare; // per side: passes that give a dark side its share of the samples; else undefined
+    int darkPass;        // passes over dark sides so far
+    bool spreads;        // the last of them found light, so that other dark sides may have it from there
     int64_t rays;
     vplContext* context;
 } vplLitSearch;

@@ -7,6 +7,7 @@
 #include "radiosity/sides/lit_search.h"
 #include "radiosity/sides/side.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
@@ -91,19 +92,11 @@ static bool isBroad(const vplLitSearch* s, const vplLitSample* sample, vplVec3 f
     return broad;
 }
 
-// True if a dark side has had samples in proportion to its area. The triangles of groups are small enough for few samples.
-static bool hasItsShare(const vplLitSearch* s, int side)
-{
-    const int patch = side / 2;
-    return vplPatches_IsGroup(s->patches, patch) ||
-           s->darkSamples * s->geometry->area >= DARK_SAMPLES * vplPatches_Area(s->patches, patch);
-}
-
 // Tests whether light reaches a side that was found from a viewpoint alone. The result is in nextFromEye.
 static void testFromEye(const vplLitSearch* s, int side, int64_t* rays)
 {
     s->nextFromEye[side] = s->fromEye[side];
-    if (!s->fromEye[side] || (!s->spreads && hasItsShare(s, side))) {
+    if (!s->fromEye[side] || (!s->spreads && s->darkPass >= s->darkShare[side])) {
         return;
     }
     for (int i = 0; i < VPL_PATCH_CELLS && s->nextFromEye[side] != 0; i++) {
@@ -176,6 +169,18 @@ static int countUnlit(const vplLitSearch* s)
     return unlit;
 }
 
+// Samples of a dark side are in proportion to its area. The triangles of groups are small enough for one pass.
+static void findDarkShares(vplLitSearch* s)
+{
+    for (int side = 0; side < 2 * s->patches->patchCount; side++) {
+        const int patch = side / 2;
+        const bool large = s->fromEye[side] && !vplPatches_IsGroup(s->patches, patch);
+        const double samples =
+            large ? DARK_SAMPLES * vplPatches_Area(s->patches, patch) / s->geometry->area : 0;
+        s->darkShare[side] = (uint16_t)fmin(MOST_DARK_PASSES, ceil(samples / VPL_PATCH_CELLS));
+    }
+}
+
 // Counts the sides that viewpoints see and no light was found to reach, and those of them that lack samples.
 static int countDark(const vplLitSearch* s, int* lackingOut)
 {
@@ -183,7 +188,7 @@ static int countDark(const vplLitSearch* s, int* lackingOut)
     *lackingOut = 0;
     for (int side = 0; side < 2 * s->patches->patchCount; side++) {
         count += s->fromEye[side] != 0;
-        *lackingOut += s->fromEye[side] != 0 && !hasItsShare(s, side);
+        *lackingOut += s->fromEye[side] != 0 && s->darkPass < s->darkShare[side];
     }
     return count;
 }
@@ -195,14 +200,18 @@ static int countDark(const vplLitSearch* s, int* lackingOut)
 static vplResult closeDarkRooms(vplLitSearch* s)
 {
     const int sides = 2 * s->patches->patchCount, pass = s->pass;
-    int lacking, left = s->emission->sourceCount > 0 ? countDark(s, &lacking) : 0;
+    int lacking = 0, left = 0;
+    if (s->emission->sourceCount > 0) {
+        findDarkShares(s);
+        left = countDark(s, &lacking);
+    }
     s->spreads = true; // the first pass tests all sides
-    for (int i = 0; left > 0 && (s->spreads || lacking > 0) && i < MOST_DARK_PASSES; i++) {
+    while (left > 0 && (s->spreads || lacking > 0) && s->darkPass < MOST_DARK_PASSES) {
         const int before = left;
         int added;
         TRY(vplLitSearch_ForAllSides(s, testFromEye, (const double[2]){0.7, 0.7}, &added));
         memcpy(s->fromEye, s->nextFromEye, (size_t)sides * sizeof *s->fromEye);
-        s->darkSamples += VPL_PATCH_CELLS;
+        s->darkPass++;
         left = countDark(s, &lacking);
         s->spreads = left < before;
     }

@@ -210,8 +210,8 @@ static bool isClear(const vplRenderer* r, double asked, bool plansAgain, double 
            (double)r->judged.rays * VPL_PATH_RAY > 0.25 * spent;
 }
 
-// A picture of patches has no noise, and few pixels have most of its error. More pixels are compared for errors below 4 %, and after
-// patches took over from virtual lights.
+// A picture of patches has no noise, and few pixels have most of its error. More pixels are compared for errors below 4 %, and in
+// scenes that are not plain.
 static int countTruthPixels(const vplRenderer* r)
 {
     const vplRenderOptions* o = &r->plan->options;
@@ -228,6 +228,13 @@ vplResult vplRefineTruth(vplRenderer* r)
     return VPL_SUCCESS;
 }
 
+void vplForgetTruth(vplRenderer* r)
+{
+    r->otherRays += vplTruth_Rays(r->truth);
+    vplTruth_Destroy(r->truth);
+    r->truth = NULL;
+}
+
 vplResult vplWidenTruth(vplRenderer* r)
 {
     vplImage* image = NULL;
@@ -240,8 +247,7 @@ vplResult vplWidenTruth(vplRenderer* r)
     TRY(result);
     vplLog(r->runner.run.context, VPL_LOG_INFO, "compares %d pixels with paths instead of %d",
            vplTruth_CountPixels(wider), vplTruth_CountPixels(r->truth));
-    r->otherRays += vplTruth_Rays(r->truth);
-    vplTruth_Destroy(r->truth);
+    vplForgetTruth(r);
     r->truth = wider;
     r->spreadBefore = INFINITY;
     vplRun_AddTime(&r->runner.run, "truth", start);

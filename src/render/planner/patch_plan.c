@@ -59,7 +59,7 @@ static bool canUsePatches(const vplRunner* r, const vplPlan* p, const vplRenderO
            (vplMethodsFor(o) & VPL_USE_RADIOSITY) != 0 && hasFewEmitters(r, p);
 }
 
-// ---- patches instead of virtual lights that take long
+// ---- a first try of patches in scenes that are not plain
 
 enum {
     TRIANGLE_RAYS = 60, // a triangle is cut or grouped in the time of so many rays (furnished)
@@ -86,23 +86,23 @@ bool vplMayTryPatches(const vplRunner* r, const vplPlan* p, const vplRenderOptio
 
 // ---- the first plan
 
-// Fewer virtual lights tell nothing about the scene.
-enum { ENOUGH_LIGHTS = 64 };
-
-// Where doors hide more of the virtual lights than this lets through, patches come first: the first pass of virtual lights in the flat
-// (19 % reach) leaves 70 to 180 % of error in as much time as 1,000 patches take, which leave 9.
+// Patches come first if less than this share of the virtual lights reaches the picture. In the flat (19 %) the first pass of virtual
+// lights leaves 70 to 180 % of error, 1,000 patches leave 9 % in the same time.
 static const double FEW_REACH = 0.4;
 
-// Rays by which pixels gather the light of these patches. Behind doors light is finer than patches: in the flat 1,000 patches leave 13 %
-// of error without a gather, 9 with 4 rays and 5 with 16, in 0.6, 0.6 and 1.3 s (320x180). Where patches are tried after virtual
-// lights there is none: with 16 rays the hall took 41 s instead of 26, door-ajar 4.4 instead of 3.4 (20 %, medians of five).
+// The share is too uncertain with fewer virtual lights.
+enum { ENOUGH_LIGHTS = 64 };
+
+// Rays of the final gather, where patches come first. Light behind doors is finer than patches: in the flat 1,000 patches leave 13 %
+// of error without a gather, 9 with 4 rays and 5 with 16, in 0.6, 0.6 and 1.3 s (320x180). Patches that are tried after virtual
+// lights have no gather: with 16 rays the hall took 41 s instead of 26, door-ajar 4.4 instead of 3.4 (20 %, medians of five).
 static int firstGather(const vplRenderOptions* o)
 {
     return o->stop.maxError >= 0.15 ? 4 : 16;
 }
 
-// Rays per pixel by which virtual lights leave an error of 1, if all lights contribute alike. In the flat, where they are worth 0.046 of
-// as many equal ones, 26 to 52 rays do (20, 10 and 5 %), which is 1.2 to 2.4 of equal lights.
+// Virtual lights need HIDDEN_RAYS / (worth error^2) rays per pixel; `worth` is that of vplLook. In the flat (worth 0.046) errors of 20, 10
+// and 5 % took 26 to 52 / error^2 rays per pixel, so the number is 1.2 to 2.4.
 static const double HIDDEN_RAYS = 2.4;
 
 double vplForeseenLightRays(const vplPlan* p)

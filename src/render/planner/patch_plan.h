@@ -13,7 +13,7 @@ bool vplChoosePatches(const vplRunner* runner, vplPlan* plan);
 // Patches of a first try instead of virtual lights or paths.
 #define VPL_FIRST_PATCHES 1000
 
-// How many times as many rays gather the light of a pixel in the next try, if any do.
+// If pixels gather the light of patches, the next try has so many times the rays.
 #define VPL_MORE_GATHER 2
 
 // The planner tries patches once, if the first try and the passes that it discards cost at most this share of the rays that virtual
@@ -27,8 +27,7 @@ bool vplMayTryPatches(const vplRunner* runner, const vplPlan* plan, const vplRen
 // Counts rays of patches that were in vain: they and those that follow get no more than virtual lights were foreseen to need.
 void vplCountVainPatches(vplRenderer* renderer, double rays);
 
-// Rays that virtual lights are foreseen to need where --method auto begins with patches because doors hide most lights; 0 where it
-// does not, or begins with them for another reason.
+// Rays that virtual lights are foreseen to need for the error that was asked for, if few of them reach the picture; else 0.
 double vplForeseenLightRays(const vplPlan* plan);
 
 // A next try has so many times the patches. Their error beside edges, squared, falls by as much, and form factors take about n^1.5

@@ -110,9 +110,7 @@ static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool*
     const vplRenderOptions o = askedWithPatches(r, VPL_FIRST_PATCHES, r->asked.radiosity.gather);
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
-    r->otherRays += vplTruth_Rays(r->truth);
-    vplTruth_Destroy(r->truth); // its pixels were chosen by a noisy picture
-    r->truth = NULL;
+    vplForgetTruth(r); // its pixels were chosen by a noisy picture
     return VPL_SUCCESS;
 }
 
@@ -181,14 +179,28 @@ static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay
 // instead of 12.
 static const double KNOWING = 0.5, UNSURE = 0.1;
 
-// True if more pixels of the truth may prove the error, where more paths do not: its spread is that of the choice of pixels. They will
-// have fewer paths each. All together may cost half of the rays of the way that would be gone otherwise.
-static bool mayWiden(const vplRenderer* r, const vplErrorState* s, double asked, double rays)
+static bool hasRoomForWiderTruth(const vplRenderer* r)
 {
     const double pixels = (double)VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
-    const double all = (double)r->asked.output.width * r->asked.output.height;
-    return s->stuck && s->spread > KNOWN * asked * asked && s->truth < 0.5 * rays &&
-           pixels <= VPL_MOST_TRUTH_PIXELS && pixels <= 0.5 * all;
+    return pixels <= VPL_MOST_TRUTH_PIXELS && pixels <= 0.5 * r->asked.output.width * r->asked.output.height;
+}
+
+// If the error is not known well enough for a decision, traces more paths of the truth, where the truth has cost less than `paths` rays.
+// Where more paths do not make its spread smaller, because few pixels have most of the error, takes more pixels instead, if
+// the truth has cost less than `pixels` rays. *moreOut: it did, and the picture is to be judged again.
+static vplResult learnMore(vplRenderer* r, const vplErrorState* s, double asked, double paths, double pixels,
+                           bool* moreOut)
+{
+    const bool unknown = s->spread > KNOWN * asked * asked;
+    if (unknown && !s->stuck && s->truth < paths) {
+        *moreOut = true;
+        return vplRefineTruth(r);
+    }
+    if (unknown && s->stuck && s->truth < pixels && hasRoomForWiderTruth(r)) {
+        *moreOut = true;
+        return vplWidenTruth(r);
+    }
+    return VPL_SUCCESS;
 }
 
 // The way that needs least for the error.
@@ -203,24 +215,19 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     }
     TRY(vplFindWay(r, s, asked, &way));
     const double paths = s->paths / (0.9 * asked * asked);
-    const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck;
-    const double worth = fmin(WORTH * fmin(way.rays, paths), 0.5 * s->spent); // more passes come first
-    if (unknown && s->truth < worth) {
-        *moreOut = true;
-        return vplRefineTruth(r);
-    }
-    if (mayWiden(r, s, asked, fmin(fmin(way.rays, paths), 0.5 * s->spent))) {
-        *moreOut = true;
-        return vplWidenTruth(r);
+    const double next = fmin(way.rays, paths), half = 0.5 * s->spent; // more passes come first
+    TRY(learnMore(r, s, asked, fmin(WORTH * next, half), 0.5 * fmin(next, half), moreOut));
+    if (*moreOut) {
+        return VPL_SUCCESS;
     }
     const bool leaves = paths < way.rays || way.finer > 0, unsure = s->noise > UNSURE * s->bias;
     if (r->error.total > FAR * asked) {
-        TRY(tryPatches(r, fmin(way.rays, paths), s->spent, doneOut));
+        TRY(tryPatches(r, next, s->spent, doneOut));
         if (r->done == 0) {
             return VPL_SUCCESS; // another plan
         }
     }
-    if (leaves && unsure && s->spent < KNOWING * fmin(paths, way.rays)) {
+    if (leaves && unsure && s->spent < KNOWING * next) {
         return VPL_SUCCESS; // more passes
     }
     if (paths < way.rays) {
@@ -256,18 +263,15 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
         return vplProveEdges(r, s, asked, moreOut);
     }
     TRY(vplFindWay(r, s, asked, &way));
-    // In plain scenes (not limited) it costs little to know the error well, and patches that are too coarse cost more.
+    // In plain scenes, where nothing limits the rays, the truth is cheap beside the patches that it may spare.
     const bool limited = r->lightRays > 0, far = way.rest - (limited ? s->spread : 0) > asked * asked;
     const bool inVain = r->coarserSquare > 0 && far && way.rest > 0.5 * r->coarserSquare;
-    const bool unknown = s->spread > KNOWN * asked * asked && !s->stuck, proves = !limited || inVain || !far;
     const double next = limited && s->finer > 0 ? fmin(way.rays, s->finerCost * s->spent) : way.rays;
-    if (proves && unknown && s->truth < WORTH_OF_PATCHES * next) {
-        *moreOut = true;
-        return vplRefineTruth(r);
+    if (!limited || inVain || !far) {
+        TRY(learnMore(r, s, asked, WORTH_OF_PATCHES * next, limited ? 0.5 * next : 0, moreOut));
     }
-    if (proves && limited && mayWiden(r, s, asked, next)) {
-        *moreOut = true;
-        return vplWidenTruth(r);
+    if (*moreOut) {
+        return VPL_SUCCESS;
     }
     if (inVain || isHopeless(r, s, &way)) {
         return leavePatches(r, doneOut);

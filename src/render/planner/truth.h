@@ -17,7 +17,7 @@ typedef struct vplJudgement {
     int64_t rays;        // cast for the truth, so far
 } vplJudgement;
 
-// Pixels of a truth: usually, of a picture whose error is in few pixels, and at most.
+// Numbers of pixels: usually, for pictures whose error is in few pixels, and at most.
 enum { VPL_TRUTH_PIXELS = 512, VPL_MANY_TRUTH_PIXELS = 1024, VPL_MOST_TRUTH_PIXELS = 8192 };
 
 // Chooses `count` pixels of the picture, or all if it has fewer, and traces the first paths through them. Pixels that differ much from
