@@ -195,9 +195,9 @@ soak: deps
 	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/soak
 	OMP_WAIT_POLICY=passive $(BUILD)/soak $(or $(N),20000)
 
-## make faults      every allocation of every method fails; 300 interrupts at random moments
+## make faults      every allocation fails once, every method is cancelled at every call; 300 interrupts at random moments
 faults: test-programs
-	VPL_EVERY_ALLOCATION=1 $(BUILD)/vpl-tests FailedAllocationsOfEveryMethod
+	VPL_EVERY_FAULT=1 $(BUILD)/vpl-tests FailedAllocation CancelledAtEveryCall
 	tests/signals.sh $(BUILD)/vpl 300
 
 ## make test-mpi    vpl-mpi: installs OpenMPI, MPICH and Slurm, builds it with both, tests 1 to 8 ranks and the batch scripts

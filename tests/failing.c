@@ -8,6 +8,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+bool everyFault(void)
+{
+    return getenv("VPL_EVERY_FAULT") != NULL;
+}
+
 static void* failingAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
 {
     Failing* f = user;
@@ -114,7 +119,7 @@ static long failThese(const char* name, Scenario* scenario, const char* path, in
 
 void failEveryAllocation(const char* name, Scenario* scenario, const char* extension, int variants)
 {
-    const long thin = TEST_SLOWDOWN > 1 && getenv("VPL_EVERY_ALLOCATION") == NULL ? 16 : LONG_MAX;
+    const long thin = everyFault() ? LONG_MAX : 16;
     char folder[] = "/tmp/vpl-memory-XXXXXX", path[64];
     long allocations = 0;
     assert_non_null(mkdtemp(folder));
@@ -129,7 +134,7 @@ void failEveryAllocation(const char* name, Scenario* scenario, const char* exten
 void failSomeAllocations(const char* name, Scenario* scenario, int variants)
 {
     long allocations = 0;
-    if (getenv("VPL_EVERY_ALLOCATION") != NULL) {
+    if (everyFault()) {
         failEveryAllocation(name, scenario, "none", variants);
         return;
     }

@@ -35,12 +35,16 @@ typedef struct Attempt {
 
 typedef vplResult Scenario(Attempt* attempt);
 
+// Returns whether the environment has VPL_EVERY_FAULT, as make faults sets it. Without it tests try the first faults one by one and
+// later ones at growing distances.
+bool everyFault(void);
+
 // Runs each variant of a scenario until no allocation is left to fail, in two ways: only the n-th allocation
 // fails, or all from the n-th on fail. `extension` is the extension of the file that the scenario writes.
 void failEveryAllocation(const char* name, Scenario* scenario, const char* extension, int variants);
 
-// The same for scenarios without a file and with many variants: allocations at growing distances, and each variant in one
-// of the two ways. All allocations in both ways if the environment has VPL_EVERY_ALLOCATION.
+// The same for scenarios without a file and with many variants: fewer allocations, and each variant in one of the two ways, unless
+// everyFault.
 void failSomeAllocations(const char* name, Scenario* scenario, int variants);
 
 // State of an allocator whose n-th allocation fails (-1: none) and, with stayEmpty, all after it. openFailing

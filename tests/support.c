@@ -316,7 +316,7 @@ double errorAgainstPaths(const vplScene* scene, const vplImage* image)
         o.output.width = image->width;
         o.output.height = image->height;
         o.method = VPL_METHOD_PATH;
-        o.path.samples = 256;
+        o.path.samples = 128;
         o.seed = 77 + (uint64_t)i;
         halves[i] = renderScene(scene, &o, NULL);
     }

