@@ -54,12 +54,12 @@ TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow -PeakBy
     -SealedRoomsAreBlack -PanesLet -MapsAndRaysAgree -SameAtAnySize -PassesHaveNothing -WhereLampsOutnumber -FewerLightsThan
     -RenderThatWasSaved -TheCountHolds -TheEstimateOfLinks -ThroughASlot"
 ALSO=build/gcc-asan-ubsan/nulls
-run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g -O1" SANITIZE=address,undefined
+run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g1 -O1" SANITIZE=address,undefined
 ALSO=
 if command -v clang >/dev/null 2>&1; then
     # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor.
     TESTS="Threads Everywhere SameBits ChoicesDoNotDepend AHostsOwnScheduler Cancel StepsGive -CancelledAnywhere -ACancelledPass"
-    run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g -O1 -DVPL_TEST_PTHREADS"
+    run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g1 -O1 -DVPL_TEST_PTHREADS"
 fi
 TESTS=$ARITHMETIC
 if command -v clang >/dev/null 2>&1; then

@@ -19,8 +19,8 @@
 
 // Defines and registers a test. TEST(SharedEdgeIsCoveredOnce, 2) { ... } gets a `context` with two threads,
 // which must hold no memory at the end of the test; TEST_ALONE(...) gets none. SLOW as last argument marks
-// tests that take a second or more, because they measure statistics or try many cases: `vpl-tests --quick`
-// leaves them out.
+// tests that take half a second or more, because they measure statistics or try many cases: `vpl-tests --quick`
+// leaves them out. Tests of memory that runs out are not marked: they are what sanitizers are for.
 #define TEST(name, ...)                                                                                      \
     static void name(vplContext* context);                                                                   \
     REGISTER_TEST(name, .run = name, .workers = __VA_ARGS__)                                                 \

@@ -69,7 +69,7 @@ TEST_ALONE(ACancelledPassLeavesThoseBefore, SLOW)
 }
 
 // A host's tasks cannot be stopped: all of a pass is done before it is cancelled.
-TEST_ALONE(APassOfAHostsTasksIsTakenBack)
+TEST_ALONE(APassOfAHostsTasksIsTakenBack, SLOW)
 {
     vplContextDef def = vplDefaultContextDef();
     vplContext* context;

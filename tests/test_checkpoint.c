@@ -72,7 +72,7 @@ TEST_ALONE(ALoadedRenderGoesOnToTheSameBits)
 }
 
 // Counts that end a render may change: a finished render goes on to more, also where its last pass was short.
-TEST(AFinishedRenderGoesOnToMore, 1)
+TEST(AFinishedRenderGoesOnToMore, 1, SLOW)
 {
     static const char* const MORE[PASS_CASES] = {"--spp 150",  "--spp 150",  "--passes 5",
                                                  "--passes 5", "--passes 5", "--passes 5"};

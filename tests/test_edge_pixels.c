@@ -192,7 +192,7 @@ TEST(TracedEdgesSpareRays, 2)
 
 // Where many pixels have the error, tracing them would cost more than other ways: the planner does not go far beyond the rays of
 // path tracing.
-TEST(EdgesAreNotTracedWhereOtherWaysCostLess, 2)
+TEST(EdgesAreNotTracedWhereOtherWaysCostLess, 2, SLOW)
 {
     vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
     vplRenderOptions o = edgeOptions(0, "--method auto --passes 0 --max-error 0.05 --size 64x36");
@@ -211,7 +211,7 @@ TEST(EdgesAreNotTracedWhereOtherWaysCostLess, 2)
 
 // Lamps that are brighter by a power of two: errors are relative, so that the planner decides the same, and the picture is
 // brighter by that factor, bit by bit.
-TEST(TheUnitOfLightDecidesNothing, 2)
+TEST(TheUnitOfLightDecidesNothing, 2, SLOW)
 {
     static const float factors[] = {1, 8, 0x1p-6f};
     vplRenderStats stats[3];

@@ -198,7 +198,7 @@ static vplScene* shadowScene(vplContext* context, vplEmitterType type)
 
 static const char* const HARD[] = {"method", "direct", "light-shadows", "ray", NULL};
 
-TEST(RimsOfShadowsComeNearTheTruth, 2)
+TEST(RimsOfShadowsComeNearTheTruth, 2, SLOW)
 {
     const vplEmitterType types[] = {VPL_EMITTER_POINT, VPL_EMITTER_DIRECTIONAL};
     for (int i = 0; i < 2; i++) {

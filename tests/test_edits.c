@@ -95,7 +95,7 @@ static void assertEditsGiveTheBitsOfADeclaration(vplContext* context, vplMethod 
     vplScene_Destroy(scene);
 }
 
-TEST(EditedScenesHaveTheBitsOfDeclaredOnes_Keller, 2)
+TEST(EditedScenesHaveTheBitsOfDeclaredOnes_Keller, 2, SLOW)
 {
     assertEditsGiveTheBitsOfADeclaration(context, VPL_METHOD_KELLER);
 }

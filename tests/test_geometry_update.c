@@ -188,7 +188,7 @@ static void editOnce(vplScene* scene, Dice* dice)
     }
 }
 
-TEST(GeometryFollowsRandomEdits, 2)
+TEST(GeometryFollowsRandomEdits, 2, SLOW)
 {
     Dice dice = {71, 0};
     int hits = 0, refitted = 0, rebuilt = 0, painted = 0, cut = 0;

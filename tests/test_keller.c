@@ -214,7 +214,7 @@ static double irradianceOnSphere(vplContext* context, const vplLightSet* set)
 // estimator_factors.csv, "Keller furnace": walls that emit Le and reflect rho have radiance Le / (1 - rho);
 // as printed, Le (1 + rho / (1 - rho/pi)). On a sphere a light has the same effect on every point, so the sum
 // is exact apart from the steps that floor(rho^j N) = 0 cuts off.
-TEST_ALONE(ClosedRoomsGlowAsTheFormulasSay)
+TEST_ALONE(ClosedRoomsGlowAsTheFormulasSay, SLOW)
 {
     static const struct {
         float rho;

@@ -299,7 +299,7 @@ TEST(AnAreaLightFlushWithTheCeilingShinesFromWhereItIs, 2)
     closeRoom(&room);
 }
 
-TEST(NoLightGoesThroughAWall, 2)
+TEST(NoLightGoesThroughAWall, 2, SLOW)
 {
     Room room;
     vplScene* scene = closedCubeScene(context, 0.5f, 0);

@@ -517,7 +517,7 @@ TEST(LightComesThroughASmallKeyhole, 2, SLOW)
 
 // Five rooms in a row, with openings on alternating sides; the camera is in the last, whose light is a ten-thousandth of the first's.
 // When sweeps ended as soon as the first was complete, the last had 0.95 of its light.
-TEST(SweepsGoOnUntilDarkRoomsAreComplete, 2)
+TEST(SweepsGoOnUntilDarkRoomsAreComplete, 2, SLOW)
 {
     vplScene* scene = openScene(context, "tests/data/winding.json");
     vplRenderOptions o = radiosityOptions(1500);

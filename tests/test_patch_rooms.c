@@ -52,7 +52,7 @@ TEST(LightComesInThroughAWindow, 2, SLOW)
 }
 
 // A lamp outside a closed room leaves it black.
-TEST(LightStaysOutsideAClosedRoom, 2)
+TEST(LightStaysOutsideAClosedRoom, 2, SLOW)
 {
     vplScene* scene = roomWithWindow(context, 0, 0);
     addEmitter(scene, VPL_EMITTER_POINT, vplVec(5.5f, 1.6f, 2.2f), vplVec(-1, 0, 0), 100);
@@ -115,7 +115,7 @@ TEST(TJunctionsAreNotSeen, 2)
 // ---- cuts with incentres, and too many cuts
 
 // Form factors between incentres, as the document has them, may be asked for together with cuts.
-TEST(CutsWorkWithIncentres, 2)
+TEST(CutsWorkWithIncentres, 2, SLOW)
 {
     vplScene* scene = openScene(context, "examples/scenes/sunken-boxes.json");
     vplRenderOptions o = radiosityOptions(920);
@@ -131,7 +131,7 @@ TEST(CutsWorkWithIncentres, 2)
 
 // A grid of 2 x 130 walls on a floor asks for more cuts than are made: patches remain, and a warning says how many
 // lines are not resolved.
-TEST(TooManyCutsAreCounted, 2)
+TEST(TooManyCutsAreCounted, 2, SLOW)
 {
     enum { WALLS = 130 };
     vplScene* scene = sceneOf(context, 0.5f);

@@ -172,7 +172,7 @@ TEST_ALONE(OfTwoTrianglesInOnePlaceTheFirstHasTheLight)
 
 // Five rooms in a row are connected by doors of a tenth of the wall, which do not face each other; the
 // emitter is in the first room. All walls of all rooms must be found, with few patches and with many.
-TEST_ALONE(LightGoesThroughDoorsToTheLastRoom)
+TEST_ALONE(LightGoesThroughDoorsToTheLastRoom, SLOW)
 {
     for (int fine = 0; fine < 2; fine++) {
         Shape shape = {0};

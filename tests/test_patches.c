@@ -322,7 +322,7 @@ static void expectFailure(const vplGeometry* g, vplPatchDef def, vplResult wante
 
 // X098: T = 0 leaves the choice to the count; negative and non-finite T are refused; a tiny T is refused
 // before memory is allocated, or ends after the last round, or where float has no midpoint.
-TEST(TinyThresholdsEnd, 1)
+TEST(TinyThresholdsEnd, 1, SLOW)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
     vplPatchDef def = vplDefaultPatchDef();

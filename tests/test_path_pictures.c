@@ -210,7 +210,7 @@ TEST(PassesOfAnySizeEndInTheSameBits, 2)
 
 // If all samples of a pixel see the same surface, the rasterizer must show that surface there; this must hold
 // for most pixels.
-TEST(PixelsAreTheRasterizersPixels, 2)
+TEST(PixelsAreTheRasterizersPixels, 2, SLOW)
 {
     vplScene* scene = newScene(context);
     for (int i = 0; i < 40; i++) {

@@ -133,7 +133,7 @@ TEST(PiecesHaveTheBitsOfOneRender, 2)
 }
 
 // Near hits of sixteen pixels share one of several lights, so a band must take the same pixels together as the whole.
-TEST(PiecesOfAFinalGatherChooseTheSameLights, 2)
+TEST(PiecesOfAFinalGatherChooseTheSameLights, 2, SLOW)
 {
     static const char* const CASES[] = {"--method radiosity --patches 60 --gather 4 --interleave 8",
                                         "--method radiosity --patches 60 --gather 4 --interleave 4"};

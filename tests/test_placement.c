@@ -307,7 +307,7 @@ TEST(PicturesAreThoseOfPlainParticlesInTheMean, 2, SLOW)
 
 // In a flat whose area lights are in seven other rooms, nearly all chosen lights are ones that reach the
 // camera's room.
-TEST(LightsBehindWallsAreLeftOut, 2)
+TEST(LightsBehindWallsAreLeftOut, 2, SLOW)
 {
     vplScene* scene;
     assert_int_equal(vplScene_Load(context, "examples/scenes/flat.json", &scene), VPL_SUCCESS);
@@ -338,7 +338,7 @@ static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* o)
     return hash;
 }
 
-TEST_ALONE(ChoicesDoNotDependOnThreadsOrIsa)
+TEST_ALONE(ChoicesDoNotDependOnThreadsOrIsa, SLOW)
 {
     for (int placement = VPL_PLACEMENT_RSM; placement <= VPL_PLACEMENT_VIEW; placement++) {
         for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {

@@ -61,7 +61,7 @@ static bool isLeftOut(const vplPlan* plan, const char* name)
 
 // ---- reproducibility
 
-TEST(TwoPlansOfTheSameAreEqual, 2)
+TEST(TwoPlansOfTheSameAreEqual, 2, SLOW)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     for (int method = 0; method < METHOD_COUNT; method++) {
@@ -86,7 +86,7 @@ TEST(TwoPlansOfTheSameAreEqual, 2)
 }
 
 // The machine affects estimates, never a decision.
-TEST(MachinesChangeNoDecision, 1)
+TEST(MachinesChangeNoDecision, 1, SLOW)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     for (int method = 0; method < METHOD_COUNT; method++) {
@@ -151,7 +151,7 @@ static void assertStages(const vplPlan* plan, const char* wanted)
     assert_string_equal(names, wanted);
 }
 
-TEST(EachMethodRunsTheStagesOfItsDocument, 1)
+TEST(EachMethodRunsTheStagesOfItsDocument, 1, SLOW)
 {
     static const char* const wanted[METHOD_COUNT] = {
         "geometry, particles, shadow map, area lights, virtual lights, shading",

@@ -300,7 +300,7 @@ TEST(NothingIsDarkBecauseItTouchesABox, 2, SLOW)
 
 // ---- refusals
 
-TEST(WhatIsNotPossibleIsASentence, 1)
+TEST(WhatIsNotPossibleIsASentence, 1, SLOW)
 {
     vplScene* scene = boxRoom(context, 0.5f, false);
     const vplRenderOptions good = radiosityOptions(100);

@@ -72,7 +72,7 @@ static bool refuseLater(void* user, double fraction)
 }
 
 // Wherever the first frame was cancelled, the next frame of the same history is the same as without it.
-TEST(CancelledFramesLeaveNothingBehind, 1)
+TEST(CancelledFramesLeaveNothingBehind, 1, SLOW)
 {
     vplScene* scene = boxRoom(context, 0.7f, false);
     vplRenderOptions o = radiosityOptions(40);

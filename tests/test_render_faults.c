@@ -106,7 +106,7 @@ TEST(EveryMethodAndShowIsCancelledAtEveryCall, 1, SLOW)
     assert_true(calls > 10 * count);
 }
 
-TEST(ABakeIsCancelledAtEveryCall, 1)
+TEST(ABakeIsCancelledAtEveryCall, 1, SLOW)
 {
     vplScene* scene = openScene(context, "tests/data/corner-path.json");
     vplRenderOptions options = vplDefaultRenderOptions();

@@ -44,7 +44,7 @@ static uint64_t hashOfSteps(const vplScene* scene, const vplRenderOptions* o, in
 }
 
 // Covers every method, with one pass and with several; getting pictures between steps changes nothing.
-TEST_ALONE(StepsGiveTheBitsOfOneCall)
+TEST_ALONE(StepsGiveTheBitsOfOneCall, SLOW)
 {
     static const vplMethod methods[] = {VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_KELLER, VPL_METHOD_PATH,
                                         VPL_METHOD_DIRECT};
@@ -102,7 +102,7 @@ TEST(MorePassesAreBetterAndSaySo, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
-TEST(AnErrorOrATimeEndsIt, 2)
+TEST(AnErrorOrATimeEndsIt, 2, SLOW)
 {
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = progressiveOptions();

@@ -117,7 +117,7 @@ static vplScene* whiteCorner(vplContext* context, float rho)
     return scene;
 }
 
-TEST(AWhiteSceneVanishesInAConstantSky, 2)
+TEST(AWhiteSceneVanishesInAConstantSky, 2, SLOW)
 {
     vplScene* scene = whiteCorner(context, 1);
     setEnvironment(scene, constantOf(2, 2, 2));
@@ -424,7 +424,7 @@ TEST_ALONE(SkiesHaveTheSameBitsEverywhere)
 }
 
 // Passes of Keller's method each bring their own directions; their mean has less noise.
-TEST(PassesSampleTheSkyAnew, 2)
+TEST(PassesSampleTheSkyAnew, 2, SLOW)
 {
     vplScene* scene = whiteCorner(context, 0.5f);
     setEnvironment(scene, constantOf(1, 1, 1));

@@ -166,7 +166,7 @@ TEST(PrintedWeightsMoveTheSecondBounce, 1)
 
 // ---- toggles
 
-TEST(BouncesAreToggled, 2)
+TEST(BouncesAreToggled, 2, SLOW)
 {
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(48);
@@ -199,10 +199,11 @@ TEST(BouncesAreToggled, 2)
 }
 
 // Every stage can be shown; stages that do not exist are refused with a message.
-TEST(EveryStageIsShown, 2)
+TEST(EveryStageIsShown, 2, SLOW)
 {
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(48);
+    o.shadow.rsmSize = 64;
     vplRenderStats plain, stats;
     vplImage_Destroy(renderScene(scene, &o, &plain));
     for (int show = VPL_SHOW_RSM; show <= VPL_SHOW_DENOISED; show++) {
@@ -437,7 +438,7 @@ TEST(WhatIsNotPossibleIsASentence, 1)
 }
 
 // Clusters of all bounces are those of the first and those of the others.
-TEST(ClustersOfAllBouncesAreCounted, 1)
+TEST(ClustersOfAllBouncesAreCounted, 1, SLOW)
 {
     vplScene* scene = openScene(context, "examples/scenes/room.json");
     int all[2];

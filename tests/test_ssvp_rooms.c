@@ -294,7 +294,7 @@ TEST(RoomsHaveTheLightOfPaths, 2, SLOW)
 }
 
 // Where too few clusters are allowed, one sentence says how much is wrong; with the default nothing is said.
-TEST(TooFewClustersAreWarnedOf, 2)
+TEST(TooFewClustersAreWarnedOf, 2, SLOW)
 {
     vplScene* scene;
     vplRenderStats stats;

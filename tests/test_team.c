@@ -207,7 +207,7 @@ TEST_ALONE(AMemberWithoutMemoryEndsTheTeam, SLOW)
     assert_true(failures > 60);
 }
 
-TEST_ALONE(AMemberThatIsCancelledEndsTheTeam)
+TEST_ALONE(AMemberThatIsCancelledEndsTheTeam, SLOW)
 {
     Member members[MOST];
     int cancelled = 0;
