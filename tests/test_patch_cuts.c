@@ -515,6 +515,31 @@ TEST(LightComesThroughASmallKeyhole, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
+// The search finds the room behind the hole among whole pieces, too, with every seed, so that these are divided: few samples of the
+// floor see the lamp, but many see the faces of the hole, which it lights.
+TEST(PiecesBehindASmallKeyholeAreFound, 2)
+{
+    vplScene* scene = openScene(context, "tests/data/small_keyhole.json");
+    const vplVec3 eye = vplScene_GetCamera(scene, 0)->eye;
+    vplGeometry* g = buildGeometry(scene);
+    vplPatches* pieces = cutPatches(g, 1);
+    vplPatchSidesDef def = vplDefaultPatchSidesDef();
+    def.emitters = vplScene_GetEmitter(scene, 0);
+    def.emitterCount = def.viewpointCount = 1;
+    def.viewpoints = &eye;
+    for (def.seed = 0; def.seed < 8; def.seed++) {
+        vplPatchSides* sides;
+        assert_int_equal(vplPatchSides_Create(pieces, &def, &sides), VPL_SUCCESS);
+        if (sides->count < 50) { // 34 are in the lit room and in the hole
+            fail_msg("seed %d: %d sides of %d pieces", (int)def.seed, sides->count, pieces->patchCount);
+        }
+        vplPatchSides_Destroy(sides);
+    }
+    vplPatches_Destroy(pieces);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+}
+
 // Five rooms in a row, with openings on alternating sides; the camera is in the last, whose light is a ten-thousandth of the first's.
 // When sweeps ended as soon as the first was complete, the last had 0.95 of its light.
 TEST(SweepsGoOnUntilDarkRoomsAreComplete, 2, SLOW)

@@ -90,8 +90,8 @@ void vplLitSearch_ResolveOverlap(const vplLitSearch* s, vplLitHit* hit, int64_t*
 
 // ---- samples
 
-// A sample's random numbers are numbered by their use: its position, up to six rays, and the light source.
-enum { POSITION = 0, FIRST_RAY = 1, LIGHT_SOURCE = 7 };
+// A sample's random numbers are numbered by their use: its position, up to five rays, the side that was found, and the light source.
+enum { POSITION = 0, FIRST_RAY = 1, FOUND = 6, LIGHT_SOURCE = 7 };
 
 static vplRandom4 randomOf(const vplLitSearch* s, const vplLitSample* sample, int use)
 {
@@ -195,4 +195,15 @@ bool vplLitSample_IsLit(const vplLitSearch* s, vplLitSample* sample, int gathers
         }
     }
     return false;
+}
+
+bool vplLitSample_SeesFound(const vplLitSearch* s, const vplLitSample* sample, int64_t* rays, vplVec3* from)
+{
+    if (s->foundCount == 0) {
+        return false;
+    }
+    const uint64_t r = randomOf(s, sample, FOUND).v[0];
+    *from = s->nextLitPoint[s->found[r * (uint64_t)s->foundCount >> 32]];
+    return vplDot(vplSub(*from, sample->point), vplLitSearch_Normal(s, sample->side, sample->triangle)) > 0 &&
+           vplLitSearch_IsVisible(s, sample->point, *from, rays);
 }

@@ -31,8 +31,11 @@ typedef struct vplLitSearch {
     double meanArea;     // of patches
     int pass;            // selects other random numbers in each pass
     uint16_t* darkShare; // per side: passes that give a dark side its share of the samples; else undefined
-    int darkPass;        // passes over dark sides so far
-    bool spreads;        // the last of them found light, so that other dark sides may have it from there
+    int*
+        found; // dark sides that light was found to reach after all; nextLitPoint has a point of each that is lit
+    int foundCount;
+    int darkPass; // passes over dark sides so far
+    bool spreads; // the last of them found light, so that other dark sides may have it from there
     int64_t rays;
     vplContext* context;
 } vplLitSearch;
@@ -112,6 +115,10 @@ typedef struct vplLitSample {
 
 // The sample's point on the side: stratified, and clear of the patch's edges, where walls meet.
 vplVec3 vplLitSample_OnSide(const vplLitSearch* search, vplLitSample* sample);
+
+// Tests whether light reaches the sample from a random one of search->found.
+bool vplLitSample_SeesFound(const vplLitSearch* search, const vplLitSample* sample, int64_t* rays,
+                            vplVec3* fromOut);
 
 // Fills sample->point. False as in vplLitSearch_Offset.
 bool vplLitSample_Offset(const vplLitSearch* search, vplLitSample* sample, int64_t* rays);

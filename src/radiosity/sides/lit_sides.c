@@ -102,9 +102,13 @@ static void testFromEye(const vplLitSearch* s, int side, int64_t* rays)
     for (int i = 0; i < VPL_PATCH_CELLS && s->nextFromEye[side] != 0; i++) {
         vplLitSample sample = {.side = side, .cell = i, .index = s->pass % VPL_LIT_SAMPLES};
         vplVec3 from;
-        if (vplLitSample_Offset(s, &sample, rays) && vplLitSample_IsLit(s, &sample, GATHERS, rays, &from) &&
-            (sample.fromEye || isBroad(s, &sample, from, rays))) {
-            s->nextFromEye[side] = sample.fromEye;
+        if (!vplLitSample_Offset(s, &sample, rays)) {
+            continue;
+        }
+        const bool lit = vplLitSample_IsLit(s, &sample, GATHERS, rays, &from) && !sample.fromEye;
+        if ((lit || vplLitSample_SeesFound(s, &sample, rays, &from)) && isBroad(s, &sample, from, rays)) {
+            s->nextFromEye[side] = 0;
+            s->nextLitPoint[side] = vplLitSearch_MoveTowards(s, side / 2, sample.point, from);
         }
     }
 }
@@ -181,6 +185,18 @@ static void findDarkShares(vplLitSearch* s)
     }
 }
 
+// Makes the results of a pass over dark sides effective.
+static void adoptFound(vplLitSearch* s)
+{
+    for (int side = 0; side < 2 * s->patches->patchCount; side++) {
+        if (s->fromEye[side] && !s->nextFromEye[side]) {
+            s->found[s->foundCount++] = side;
+        }
+        s->fromEye[side] = s->nextFromEye[side];
+    }
+    s->darkPass++;
+}
+
 // Counts the sides that viewpoints see and no light was found to reach, and those of them that lack samples.
 static int countDark(const vplLitSearch* s, int* lackingOut)
 {
@@ -210,8 +226,7 @@ static vplResult closeDarkRooms(vplLitSearch* s)
         const int before = left;
         int added;
         TRY(vplLitSearch_ForAllSides(s, testFromEye, (const double[2]){0.7, 0.7}, &added));
-        memcpy(s->fromEye, s->nextFromEye, (size_t)sides * sizeof *s->fromEye);
-        s->darkPass++;
+        adoptFound(s);
         left = countDark(s, &lacking);
         s->spreads = left < before;
     }

@@ -78,6 +78,7 @@ static vplResult reserve(vplArena* scratch, vplLitSearch* s)
     s->fromEye = vplArena_AllocZero(scratch, 2 * patches, 1);
     s->nextFromEye = vplArena_AllocZero(scratch, 2 * patches, 1);
     s->darkShare = vplArena_Alloc(scratch, 2 * patches, sizeof *s->darkShare);
+    s->found = vplArena_Alloc(scratch, 2 * patches, sizeof *s->found);
     s->hits = vplArena_AllocZero(scratch, 2 * patches, sizeof *s->hits);
     s->litPoint = vplArena_Alloc(scratch, 2 * patches, sizeof *s->litPoint);
     s->nextLitPoint = vplArena_Alloc(scratch, 2 * patches, sizeof *s->nextLitPoint);
