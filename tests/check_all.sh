@@ -17,7 +17,8 @@ check() {
     # A fork of a process under the address sanitizer has its checks, too.
     if { [ ! -e "build/$1/nulls" ] || "build/$1/nulls" >>"build/$1.log" 2>&1; } &&
         $RUNNER "build/$1/vpl-tests" --quick $TESTS >>"build/$1.log" 2>&1 &&
-        $RUNNER "build/$1/vpl-golden" check golden "build/$1/golden" >>"build/$1.log" 2>&1; then
+        { [ ! -e "build/$1/vpl-golden" ] ||
+            $RUNNER "build/$1/vpl-golden" check golden "build/$1/golden" >>"build/$1.log" 2>&1; }; then
         echo "ok $1, $(($(date +%s) - start)) s"
     else
         fails "$1"
@@ -35,7 +36,7 @@ fails() {
 run() {
     name=$1
     shift
-    if make -j"$jobs" --no-print-directory BUILD="build/$name" "$@" "build/$name/vpl-tests" "build/$name/vpl-golden" $ALSO \
+    if make -j"$jobs" --no-print-directory BUILD="build/$name" "$@" "build/$name/vpl-tests" $ALSO \
         >"build/$name.log" 2>&1; then
         check "$name" &
     else
@@ -53,24 +54,29 @@ TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow -PeakBy
     -EachOfManyLamps -PointsLieOnCompact -CentroidsInMidAir -TracedEdges -ErrorHoldsWhere -PiecesHaveTheBits -TeamsHaveTheBits
     -SealedRoomsAreBlack -PanesLet -MapsAndRaysAgree -SameAtAnySize -PassesHaveNothing -WhereLampsOutnumber -FewerLightsThan
     -RenderThatWasSaved -TheCountHolds -TheEstimateOfLinks -ThroughASlot"
-ALSO=build/gcc-asan-ubsan/nulls
+ALSO="build/gcc-asan-ubsan/vpl-golden build/gcc-asan-ubsan/nulls"
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g1 -O1" SANITIZE=address,undefined
 ALSO=
 if command -v clang >/dev/null 2>&1; then
-    # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor.
-    TESTS="Threads Everywhere SameBits ChoicesDoNotDepend AHostsOwnScheduler Cancel StepsGive -CancelledAnywhere -ACancelledPass"
+    # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor. Golden pictures have one thread.
+    TESTS="Threads Everywhere SameBits ChoicesDoNotDepend AHostsOwnScheduler Cancel StepsGive -CancelledAnywhere -ACancelledPass
+        -PredictedTime"
     run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g1 -O1 -DVPL_TEST_PTHREADS"
 fi
 TESTS=$ARITHMETIC
+ALSO=build/clang-release/vpl-golden
 if command -v clang >/dev/null 2>&1; then
     run clang-release CC=clang
 fi
 if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-static >/dev/null 2>&1 &&
     [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
-    export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu
+    export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu VPL_GOLDEN_STEP=3
+    TESTS="$ARITHMETIC -MapsAndRaysAgree"
+    ALSO=build/aarch64/vpl-golden
     RUNNER="qemu-aarch64-static -E LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu"
     run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 EXR=0 LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
 else
+    ALSO=build/gcc-plain/vpl-golden
     run gcc-plain CC=gcc MODE=debug OPENMP=0 EXR=0
 fi
 wait

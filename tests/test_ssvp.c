@@ -203,7 +203,6 @@ TEST(EveryStageIsShown, 2, SLOW)
 {
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(48);
-    o.shadow.rsmSize = 64;
     vplRenderStats plain, stats;
     vplImage_Destroy(renderScene(scene, &o, &plain));
     for (int show = VPL_SHOW_RSM; show <= VPL_SHOW_DENOISED; show++) {

@@ -168,6 +168,10 @@ vplResult vplReconsiderEarly(vplRenderer* renderer, double asked, bool* doneOut,
 // paths says that they need more rays.
 vplResult vplTurnBack(vplRenderer* renderer, double asked, bool* doneOut);
 
+// Replaces a plan of patches, of which there is no picture yet and for which the time is too short, by one with this share of its
+// patches, or, where these are hardly more than those before, by virtual lights: each of their passes is short.
+vplResult vplFitPatches(vplRenderer* renderer, double share);
+
 // True if the options' count of passes or paths is reached.
 bool vplIsComplete(const vplRenderer* renderer);
 

@@ -409,11 +409,12 @@ static void explain(vplContext* context, const Case* c, vplImage* image, const c
     vplImage_Destroy(now);
 }
 
-static int check(vplContext* context, const char* folder, const char* out)
+// Checks the first picture and every `step`-th after it.
+static int check(vplContext* context, const char* folder, const char* out, int step)
 {
-    int failed = 0;
+    int failed = 0, checked = 0;
     mkdir(out, 0777);
-    for (int i = 0; i < CASE_COUNT; i++) {
+    for (int i = 0; i < CASE_COUNT; i += step, checked++) {
         vplImage* image = renderCase(context, &CASES[i]);
         uint64_t hash = image ? vplImage_Hash(image) : 0, wanted = recordedHash(folder, CASES[i].name);
         if (image == NULL || hash != wanted) {
@@ -426,7 +427,7 @@ static int check(vplContext* context, const char* folder, const char* out)
         }
         vplImage_Destroy(image);
     }
-    printf("%d passed, %d failed\n", CASE_COUNT - failed, failed);
+    printf("%d passed, %d failed\n", checked - failed, failed);
     return failed > 0;
 }
 
@@ -472,7 +473,8 @@ int main(int count, char** words)
     }
     int code = 2;
     if (checks) {
-        code = check(context, words[2], words[3]);
+        const char* step = getenv("VPL_GOLDEN_STEP"); // 3: a third of the pictures, where an emulator is slow
+        code = check(context, words[2], words[3], step != NULL && atoi(step) > 1 ? atoi(step) : 1);
     } else if (count == 3 && strcmp(words[1], "write") == 0) {
         code = rewrite(context, words[2]);
     } else {

@@ -83,6 +83,11 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 // A plan is not begun if this share of the time foreseen for its first picture is more than the time that is left.
 static const double HOPELESS = 0.8;
 
+static bool comesTooLate(const vplRenderer* r)
+{
+    return HOPELESS * r->plan->firstMs > leftOf(r);
+}
+
 vplResult vplRenderer_PlanFirst(vplRenderer* r)
 {
     const vplMethod method = r->asked.method;
@@ -348,7 +353,7 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     *doneOut = false;
     if (r->coarse) {
         TRY(refine(r));
-        *doneOut = !r->coarse && HOPELESS * r->plan->firstMs > leftOf(r);
+        *doneOut = !r->coarse && comesTooLate(r);
         return VPL_SUCCESS;
     }
     const bool complete = vplIsComplete(r);
@@ -362,6 +367,10 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
         TRY(reviewTime(r, doneOut));
     }
     const bool changed = r->done == 0; // another plan, of which there is no pass yet
-    *doneOut = *doneOut || (changed ? HOPELESS * r->plan->firstMs > leftOf(r) : isTooLate(r));
+    if (changed && comesTooLate(r) && r->asked.method == VPL_METHOD_AUTO &&
+        r->plan->options.method == VPL_METHOD_RADIOSITY) {
+        TRY(vplFitPatches(r, leftOf(r) / r->plan->firstMs));
+    }
+    *doneOut = *doneOut || (changed ? comesTooLate(r) : isTooLate(r));
     return VPL_SUCCESS;
 }

@@ -95,6 +95,26 @@ static vplResult leavePatches(vplRenderer* r, bool* doneOut)
     return VPL_SUCCESS;
 }
 
+// More patches are worth their time if they are at least so many times as many as before.
+static const double WORTHWHILE = 1.3;
+
+vplResult vplFitPatches(vplRenderer* r, double share)
+{
+    const vplRenderOptions* kept = r->kept.plan != NULL ? &r->kept.plan->options : &r->asked;
+    const int patches = (int)(share * r->plan->options.radiosity.patches);
+    if (kept->method == VPL_METHOD_RADIOSITY && patches > WORTHWHILE * kept->radiosity.patches) {
+        const vplRenderOptions fewer = askedWithPatches(r, patches, r->plan->options.radiosity.gather);
+        vplLog(r->runner.run.context, VPL_LOG_INFO, "the time is enough for %d patches", patches);
+        return vplRenderer_Plan(r, &fewer, false);
+    }
+    const vplRenderOptions o = askedOfLights(r);
+    vplLog(r->runner.run.context, VPL_LOG_INFO,
+           "more patches would take too long: goes on with virtual lights");
+    TRY(vplRenderer_Plan(r, &o, false));
+    r->lightRays = fmax(r->lightRays, 1);
+    return VPL_SUCCESS;
+}
+
 // After some passes the planner tries patches only if the error is still more than so many times the one asked for. If it is less,
 // most of the error is at edges, which patches have, too (loft at 2 %: 18 to 31 s instead of 10).
 static const double FAR = 2;
