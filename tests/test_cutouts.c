@@ -262,30 +262,36 @@ static vplScene* bounced(vplContext* context, const vplMaterialDef* over)
     return scene;
 }
 
-TEST(PanesLetTheirShareOfIndirectLightThrough, 2)
+TEST(PanesLetTheirShareOfIndirectLightThrough, 2, SLOW)
 {
     static const struct {
         const char* words;
         double tolerance;
+        int seeds; // rays pass a pane or not by chance: form factors have 0.7 % of noise
     } methods[] = {
         {"--method keller --reflectivity 0.4 --min-distance 0 --particles 1000 --size 32x32 --light-shadows "
          "map",
-         0.001},
+         0.001, 1},
         {"--method keller --reflectivity 0.4 --min-distance 0 --particles 1000 --size 32x32 --light-shadows "
          "ray",
-         0.001},
+         0.001, 1},
         {"--method keller --reflectivity 0.4 --min-distance 0 --particles 1000 --size 32x32 --pipeline "
          "multipass",
-         0.001},
-        {"--method ssvp --size 32x32", 0.001},
-        {"--method instant-radiosity --lighting physical --light-shadows ray --size 32x32", 0.001},
-        {"--method radiosity --size 32x32 --patch-size 1", 0.003},
-        {"--method path --spp 256 --size 32x32", 0.003},
+         0.001, 1},
+        {"--method ssvp --size 32x32", 0.001, 1},
+        {"--method instant-radiosity --lighting physical --light-shadows ray --size 32x32", 0.001, 1},
+        {"--method radiosity --size 32x32 --patch-size 1", 0.003, 8},
+        {"--method path --spp 256 --size 32x32", 0.003, 1},
     };
     const vplMaterialDef glass = pane(0.3f);
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         const double open = meanOf(bounced(context, NULL), methods[i].words);
-        const double veiled = meanOf(bounced(context, &glass), methods[i].words);
+        double veiled = 0;
+        for (int seed = 0; seed < methods[i].seeds; seed++) {
+            char words[256];
+            snprintf(words, sizeof words, "%s --seed %d", methods[i].words, seed);
+            veiled += meanOf(bounced(context, &glass), words) / methods[i].seeds;
+        }
         assertNear(veiled / open, 0.7, methods[i].tolerance, methods[i].words, (int)i);
     }
 }
