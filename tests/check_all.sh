@@ -60,7 +60,7 @@ ALSO=
 if command -v clang >/dev/null 2>&1; then
     # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor. Golden pictures have one thread.
     TESTS="Threads Everywhere SameBits ChoicesDoNotDepend AHostsOwnScheduler Cancel StepsGive -CancelledAnywhere -ACancelledPass
-        -PredictedTime"
+        -PredictedTime -KeepACopy -DependOnNeither"
     run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g1 -O1 -DVPL_TEST_PTHREADS"
 fi
 TESTS=$ARITHMETIC

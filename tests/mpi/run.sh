@@ -1,9 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Tests of vpl-mpi: tests/mpi/run.sh BUILD. The bits of one process for 1, 2, 3, 5 and 8 ranks with both implementations, files
-# of finished units, faults. Needs build/vpl-mpi.openmpi and build/vpl-mpi.mpich (make test-mpi builds them).
+# of finished units, faults. Each number of ranks is tried with one of the two, with both where VPL_ALL_RANKS is set. Needs
+# build/vpl-mpi.openmpi and build/vpl-mpi.mpich (make test-mpi builds them).
 . tests/mpi/support.sh
 room=examples/scenes/room-area.json
+runs="openmpi:1 mpich:2 openmpi:3 mpich:5 openmpi:8"
+[ -z "$VPL_ALL_RANKS" ] || runs="$runs mpich:1 openmpi:2 mpich:3 openmpi:5 mpich:8"
 
 # ---- the same bits
 
@@ -19,10 +22,8 @@ picture() { # NAME SCENE OPTION...
     name=$1
     shift
     "$build/vpl" render -o "$scratch/whole.$kind" --quiet "$@" || exit 1
-    for implementation in openmpi mpich; do
-        for number in 1 2 3 5 8; do
-            check "${name}_of_${number}_ranks_$implementation" same_picture $implementation $number "$@"
-        done
+    for run in $runs; do
+        check "${name}_of_${run#*:}_ranks_${run%:*}" same_picture ${run%:*} ${run#*:} "$@"
     done
 }
 picture Path "$room" --method path --spp 4 --size 64x150 --threads 1
@@ -56,10 +57,8 @@ same_patches() { # IMPLEMENTATION N OPTION...
 }
 bake="$rooms --method radiosity --patches 300 --threads 1"
 "$build/vpl" bake $bake -o "$scratch/whole.ply" --quiet
-for implementation in openmpi mpich; do
-    for number in 1 2 3 5 8; do
-        check "Bake_of_${number}_ranks_$implementation" same_patches $implementation $number $bake
-    done
+for run in $runs; do
+    check "Bake_of_${run#*:}_ranks_${run%:*}" same_patches ${run%:*} ${run#*:} $bake
 done
 
 # Settings, pictures and errors of a sweep are those of one process; times are those of each rank.
@@ -78,10 +77,8 @@ same_sweep() { # IMPLEMENTATION N
 }
 "$build/vpl" tradeoff $sweep -o "$scratch/sweep"
 columns "$scratch/sweep/tradeoff.csv" >"$scratch/here"
-for implementation in openmpi mpich; do
-    for number in 1 2 3 5; do
-        check "Tradeoff_of_${number}_ranks_$implementation" same_sweep $implementation $number
-    done
+for run in $runs; do
+    [ "${run#*:}" = 8 ] || check "Tradeoff_of_${run#*:}_ranks_${run%:*}" same_sweep ${run%:*} ${run#*:}
 done
 
 same_frames() { # IMPLEMENTATION N OPTION...
@@ -103,10 +100,8 @@ layers_of_frames() {
 [ ! -e "$scratch/whole.exr" ] || check LayersOfFrames layers_of_frames
 sequence="examples/scenes/room-path.json --frames 0:6 --method keller --particles 20 --size 48x32 --threads 1"
 "$build/vpl" render $sequence -o "$scratch/whole.png" --quiet
-for implementation in openmpi mpich; do
-    for number in 1 2 3 5 8; do
-        check "Sequence_of_${number}_ranks_$implementation" same_frames $implementation $number $sequence
-    done
+for run in $runs; do
+    check "Sequence_of_${run#*:}_ranks_${run%:*}" same_frames ${run%:*} ${run#*:} $sequence
 done
 rm -f "$scratch"/whole* "$scratch"/ranks*
 
