@@ -55,6 +55,7 @@ TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow -PeakBy
     -SealedRoomsAreBlack -PanesLet -MapsAndRaysAgree -SameAtAnySize -PassesHaveNothing -WhereLampsOutnumber -FewerLightsThan
     -RenderThatWasSaved -TheCountHolds -TheEstimateOfLinks -ThroughASlot"
 ALSO="build/gcc-asan-ubsan/vpl-golden build/gcc-asan-ubsan/nulls"
+export VPL_GOLDEN_STEP=2
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g1 -O1" SANITIZE=address,undefined
 ALSO=
 if command -v clang >/dev/null 2>&1; then
@@ -63,6 +64,7 @@ if command -v clang >/dev/null 2>&1; then
         -PredictedTime -KeepACopy -DependOnNeither"
     run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g1 -O1 -DVPL_TEST_PTHREADS"
 fi
+unset VPL_GOLDEN_STEP
 TESTS=$ARITHMETIC
 ALSO=build/clang-release/vpl-golden
 if command -v clang >/dev/null 2>&1; then

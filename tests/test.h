@@ -125,7 +125,7 @@ void finishSaved(const vplScene* scene, const vplRenderOptions* options, const c
 // next call overwrites it.
 const char* temporaryName(const char* ending);
 
-// Computes the root-mean-square error of a picture over its mean, against two path-traced pictures of 256 paths per pixel. Their
+// Computes the root-mean-square error of a picture over its mean, against two path-traced pictures of 128 paths per pixel. Their
 // noise is independent, so that it cancels.
 double errorAgainstPaths(const vplScene* scene, const vplImage* image);
 
