@@ -110,6 +110,44 @@ static unsigned findOpenCells(CellSearch* c)
     return half != 0 ? half : some;
 }
 
+// ---- triangles of groups
+
+// Returns the code of vplPatchSides.dark for one side of a triangle of a group. Corners that are covered do not count.
+static int darknessOf(const vplLitSearch* s, int side, int triangle, int64_t* rays)
+{
+    vplVec3 corners[3];
+    bool dark = false;
+    int lit = -1;
+    vplPatchNode_GetCorners(s->patches, triangle, side & 1, corners);
+    for (int k = 0; k < 3; k++) {
+        vplLitSample sample = {
+            .side = side, .cell = triangle % VPL_PATCH_CELLS, .index = k, .triangle = triangle};
+        vplVec3 from;
+        if (!vplLitSearch_Offset(s, side, triangle, vplNearCorner(corners, k), rays, &sample.point)) {
+            continue;
+        }
+        if (vplLitSearch_IsVisible(s, sample.point, s->litPoint[side], rays) ||
+            vplLitSample_IsLit(s, &sample, GATHERS, rays, &from)) {
+            lit = k;
+        } else {
+            dark = true;
+        }
+    }
+    return !dark ? 0 : lit < 0 ? 1 : 2 + lit;
+}
+
+// Only triangles in a box of dark sides may be beside them.
+static void findDarkTriangles(const vplLitSearch* s, int side, int64_t* rays)
+{
+    const vplPatchParts parts = vplPatches_GetParts(s->patches, side / 2);
+    for (int i = 0; i < parts.count; i++) {
+        const int triangle = parts.nodes[i];
+        if (vplLitSearch_FindDarkBox(s, vplLitSearch_BoxOf(s, triangle)) < s->darkBoxCount) {
+            s->dark[triangle] |= (uint8_t)(darknessOf(s, side, triangle, rays) << 4 * (side & 1));
+        }
+    }
+}
+
 // A small patch has one cell.
 static bool isSmall(const vplLitSearch* s, int patch)
 {
@@ -118,6 +156,9 @@ static bool isSmall(const vplLitSearch* s, int patch)
 
 static void findCells(const vplLitSearch* s, int side, int64_t* rays)
 {
+    if (s->open[side] != 0 && vplPatches_IsGroup(s->patches, side / 2)) {
+        findDarkTriangles(s, side, rays);
+    }
     if (s->open[side] == 0 || isSmall(s, side / 2) || isWhole(s, side, rays)) {
         s->nextOpen[side] = s->open[side];
         return;

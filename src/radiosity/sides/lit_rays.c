@@ -88,6 +88,33 @@ void vplLitSearch_ResolveOverlap(const vplLitSearch* s, vplLitHit* hit, int64_t*
     }
 }
 
+vplBox vplLitSearch_BoxOf(const vplLitSearch* s, int node)
+{
+    vplVec3 corners[3];
+    vplFour four[3];
+    vplPatchNode_GetCorners(s->patches, node, false, corners);
+    for (int k = 0; k < 3; k++) {
+        four[k] = (vplFour){corners[k].x, corners[k].y, corners[k].z, 0};
+    }
+    return vplBoundTriangle(four);
+}
+
+int vplLitSearch_FindDarkBox(const vplLitSearch* s, vplBox box)
+{
+    int found = 0;
+    for (; found < s->darkBoxCount; found++) {
+        const vplBox* dark = &s->darkBoxes[found];
+        bool overlap = true;
+        for (int k = 0; k < 3; k++) {
+            overlap = overlap && box.low[k] <= dark->high[k] && dark->low[k] <= box.high[k];
+        }
+        if (overlap) {
+            break;
+        }
+    }
+    return found;
+}
+
 // ---- samples
 
 // A sample's random numbers are numbered by their use: its position, up to five rays, the side that was found, and the light source.
@@ -203,7 +230,7 @@ bool vplLitSample_SeesFound(const vplLitSearch* s, const vplLitSample* sample, i
         return false;
     }
     const uint64_t r = randomOf(s, sample, FOUND).v[0];
-    *from = s->nextLitPoint[s->found[r * (uint64_t)s->foundCount >> 32]];
+    *from = s->litPoint[s->found[r * (uint64_t)s->foundCount >> 32]];
     return vplDot(vplSub(*from, sample->point), vplLitSearch_Normal(s, sample->side, sample->triangle)) > 0 &&
            vplLitSearch_IsVisible(s, sample->point, *from, rays);
 }

@@ -9,6 +9,7 @@
 #define VPL_RADIOSITY_LIT_SEARCH_H
 
 #include "base/arena.h"
+#include "geometry/box.h"
 #include "math/vec.h"
 
 #include <vpl/radiosity.h>
@@ -31,17 +32,19 @@ typedef struct vplLitSearch {
     double meanArea;     // of patches
     int pass;            // selects other random numbers in each pass
     uint16_t* darkShare; // per side: passes that give a dark side its share of the samples; else undefined
-    int*
-        found; // dark sides that light was found to reach after all; nextLitPoint has a point of each that is lit
+    int* found;          // dark sides that light was found to reach after all
     int foundCount;
-    int darkPass; // passes over dark sides so far
-    bool spreads; // the last of them found light, so that other dark sides may have it from there
+    int darkPass;      // passes over dark sides so far
+    bool spreads;      // the last of them found light, so that other dark sides may have it from there
+    uint8_t* dark;     // vplPatchSides.dark
+    vplBox* darkBoxes; // of sides that viewpoints see and light does not reach; sides that touch share one
+    int darkBoxCount;
     int64_t rays;
     vplContext* context;
 } vplLitSearch;
 
 // Patches per task of a pass, and tasks per batch of particles: taskRays has room for either.
-enum { VPL_LIT_TASK_PATCHES = 32, VPL_LIT_PARTICLE_TASKS = 32 };
+enum { VPL_LIT_TASK_PATCHES = 32, VPL_LIT_PARTICLE_TASKS = 32, VPL_DARK_BOXES = 16 };
 
 // Triangles overlap if their distance is at most this fraction of an offset point's height. Rounding decides
 // which of them a ray hits, so the triangle with the lowest index stands for all.
@@ -55,7 +58,7 @@ vplResult vplLitSearch_ShootParticles(vplLitSearch* search);
 // Finds lit sides among those that no particle hit.
 vplResult vplLitSearch_FindSides(vplLitSearch* search);
 
-// Finds the open cells of all lit sides.
+// Finds the open cells of all lit sides, and the dark triangles of their groups.
 vplResult vplLitSearch_FindCells(vplLitSearch* search);
 
 // Runs `examine` for all sides in parallel; progress runs over range[0] .. range[1]. Results take effect
@@ -100,6 +103,12 @@ bool vplLitSearch_Trace(const vplLitSearch* search, vplVec3 from, vplVec3 direct
 
 // Moves a hit to the first of the triangles that overlap there.
 void vplLitSearch_ResolveOverlap(const vplLitSearch* search, vplLitHit* hit, int64_t* rays);
+
+// The box of a node of the patches.
+vplBox vplLitSearch_BoxOf(const vplLitSearch* search, int node);
+
+// Returns the first of the search's darkBoxes that overlaps a box, or darkBoxCount.
+int vplLitSearch_FindDarkBox(const vplLitSearch* search, vplBox box);
 
 // ---- random points of sides (lit_rays.c)
 

@@ -16,7 +16,9 @@ enum {
     LEAST_PASSES = 4,
     MOST_PASSES = 16,       // each pass finds one more room behind rooms
     DARK_SAMPLES = 1 << 18, // on all surfaces of the scene; dark sides get them in proportion to their area
-    MOST_DARK_PASSES = 1 << 14
+    MOST_DARK_PASSES = 1 << 14,
+    ROOM =
+        128 // fewer dark sides than one for so many patches are no room, but crevices: their surroundings are not tested
 };
 
 // The distance from a sample's offset point to the two points beside it (isBroad), as a multiple of the height of the offset point
@@ -191,6 +193,8 @@ static void adoptFound(vplLitSearch* s)
     for (int side = 0; side < 2 * s->patches->patchCount; side++) {
         if (s->fromEye[side] && !s->nextFromEye[side]) {
             s->found[s->foundCount++] = side;
+            s->litPoint[side] =
+                s->nextLitPoint[side]; // the one before is seen from a viewpoint, perhaps across a wall
         }
         s->fromEye[side] = s->nextFromEye[side];
     }
@@ -207,6 +211,22 @@ static int countDark(const vplLitSearch* s, int* lackingOut)
         *lackingOut += s->fromEye[side] != 0 && s->darkPass < s->darkShare[side];
     }
     return count;
+}
+
+// Adds the box of a dark side. Boxes that overlap become one; so does what comes when all are in use, with the last.
+static void addDarkBox(vplLitSearch* s, int side)
+{
+    const vplPatchParts parts = vplPatches_GetParts(s->patches, side / 2);
+    vplBox box = vplBox_Empty();
+    for (int i = 0; i < parts.count; i++) {
+        box = vplBox_Join(box, vplLitSearch_BoxOf(s, parts.nodes[i]));
+    }
+    int at = vplLitSearch_FindDarkBox(s, box);
+    if (at == s->darkBoxCount && at < VPL_DARK_BOXES) {
+        s->darkBoxes[s->darkBoxCount++] = vplBox_Empty();
+    }
+    at = vplMini(at, VPL_DARK_BOXES - 1);
+    s->darkBoxes[at] = vplBox_Join(s->darkBoxes[at], box);
 }
 
 // Closes sides that viewpoints see but light does not reach, as in a sealed room. Their form factors with lit sides would be 0
@@ -232,7 +252,12 @@ static vplResult closeDarkRooms(vplLitSearch* s)
     }
     s->pass = pass;
     for (int side = 0; side < sides && left > 0; side++) {
-        s->open[side] = s->fromEye[side] ? 0 : s->open[side];
+        if (s->fromEye[side]) {
+            s->open[side] = 0;
+            if (left * (int64_t)ROOM > s->patches->patchCount) {
+                addDarkBox(s, side);
+            }
+        }
         s->nextOpen[side] = s->open[side];
     }
     return VPL_SUCCESS;

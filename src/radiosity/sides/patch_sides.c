@@ -216,6 +216,7 @@ static vplResult listSides(const vplLitSearch* s, vplPatchSides* sides)
     sides->sides = list;
     sides->ofPatch = ofPatch;
     sides->hits = hits;
+    sides->dark = s->dark;
     sides->rays = s->rays;
     return VPL_SUCCESS;
 }
@@ -223,9 +224,17 @@ static vplResult listSides(const vplLitSearch* s, vplPatchSides* sides)
 static vplResult findSides(const vplPatchSidesDef* def, vplArena* scratch, vplPatchSides* sides)
 {
     const vplPatches* patches = sides->patches;
-    vplLitSearch s = {
-        .patches = patches, .geometry = patches->geometry, .def = def, .context = sides->context};
+    vplBox darkBoxes[VPL_DARK_BOXES];
+    vplLitSearch s = {.patches = patches,
+                      .geometry = patches->geometry,
+                      .def = def,
+                      .darkBoxes = darkBoxes,
+                      .context = sides->context};
     TRY(reserve(scratch, &s));
+    if (patches->groupCount > 0) {
+        s.dark = vplArena_AllocZero(sides->arena, (size_t)s.geometry->triangleCount, 1);
+        TRY(vplArena_Check(sides->arena));
+    }
     vplEmission* emission = NULL;
     TRY(vplEmission_Create(s.geometry, def->emitters, def->emitterCount, &emission));
     s.emission = emission;

@@ -126,8 +126,36 @@ int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray)
     if (!vplGeometry_ClosestHit(sides->patches->geometry, ray, &hit)) {
         return -1;
     }
-    const int patch = vplPatches_Find(sides->patches, hit.triangle, hit.position);
-    return patch < 0 ? -1 : vplSideOf(sides, patch, vplDot(ray->direction, hit.normal) > 0);
+    return vplPatchSides_Met(sides, &hit, ray->direction);
+}
+
+vplVec3 vplNearCorner(const vplVec3 corners[3], int k)
+{
+    const vplVec3 centre = vplScale(1 / 3.0f, vplAdd(corners[0], vplAdd(corners[1], corners[2])));
+    return vplAdd(corners[k], vplScale(0.125f, vplSub(centre, corners[k])));
+}
+
+// Tests whether light reaches a point of a triangle of a group. A wall that crosses the triangle is between its parts.
+static bool isLitAt(const vplPatchSides* sides, const vplHit* hit, int face)
+{
+    const int code = sides->dark == NULL ? 0 : sides->dark[hit->triangle] >> 4 * face & 15;
+    if (code < 2) {
+        return code == 0;
+    }
+    vplVec3 corners[3];
+    vplPatchNode_GetCorners(sides->patches, hit->triangle, face, corners);
+    const vplVec3 n = sides->patches->geometry->normals[hit->triangle], up = face ? vplNegate(n) : n;
+    const vplVec3 lit = vplNearCorner(corners, code - 2), way = vplSub(lit, hit->position);
+    const vplSidePoint from = {hit->position, up, hit->triangle};
+    const vplRay ray = vplPatchSides_Leave(sides, &from, vplAdd(way, vplScale(0x1p-8f * vplLength(way), up)));
+    return !vplGeometry_IsOccluded(sides->patches->geometry, &ray, 1);
+}
+
+int vplPatchSides_Met(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction)
+{
+    const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
+    const int face = vplDot(direction, hit->normal) > 0;
+    return patch < 0 || !isLitAt(sides, hit, face) ? -1 : vplSideOf(sides, patch, face);
 }
 
 // ---- values

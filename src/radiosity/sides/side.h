@@ -54,6 +54,12 @@ vplRay vplPatchSides_Leave(const vplPatchSides* sides, const vplSidePoint* from,
 // The side that a ray hits; -1: the ray hits nothing, or a side that light does not reach.
 int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray);
 
+// A point of a triangle near corner k.
+vplVec3 vplNearCorner(const vplVec3 corners[3], int k);
+
+// The same as vplPatchSides_Hit for a ray whose hit is known.
+int vplPatchSides_Met(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction);
+
 // The share of what each side emits that arrives at sides, by 64 rays from each. *rays grows by them. (hit_share.c)
 vplResult vplPatchSides_FindHitShares(const vplPatchSides* sides, uint64_t seed, float* sharesOut,
                                       int64_t* rays);

@@ -58,17 +58,16 @@ static vplMetLight meetPatch(const void* user, const vplHit* hit, vplVec3 direct
     const KnownLight* light = user;
     const vplPatchSides* sides = light->mesh->sides;
     const vplGeometry* g = sides->patches->geometry;
-    const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
-    const int face = vplDot(direction, hit->normal) > 0;
-    const int side = patch < 0 ? -1 : vplSideOf(sides, patch, face);
+    const int side = vplPatchSides_Met(sides, hit, direction);
     if (side < 0) {
         return (vplMetLight){{0, 0, 0}, 0};
     }
-    const float size = NEAR_SHARE * sqrtf(2 * sides->sides[side].area);
-    if (light->vertexIrradiance == NULL || vplPatches_IsGroup(sides->patches, patch)) {
+    const vplPatchSide* met = &sides->sides[side];
+    const float size = NEAR_SHARE * sqrtf(2 * met->area);
+    if (light->vertexIrradiance == NULL || vplPatches_IsGroup(sides->patches, met->patch)) {
         return (vplMetLight){light->reflected[side], size};
     }
-    const vplPatchPoint at = {patch, face, hit->position};
+    const vplPatchPoint at = {met->patch, met->back, hit->position};
     const vplRgb e = irradianceAt(light, side, &at);
     const vplFootprint footprint = vplFootprintOfBounce(direction, hit->t);
     const vplRgb rho = vplGeometry_Reflectance(g, hit->triangle, hit->position, &footprint);
