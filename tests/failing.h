@@ -43,8 +43,8 @@ bool everyFault(void);
 // fails, or all from the n-th on fail. `extension` is the extension of the file that the scenario writes.
 void failEveryAllocation(const char* name, Scenario* scenario, const char* extension, int variants);
 
-// The same for scenarios without a file and with many variants: fewer allocations, and each variant in one of the two ways, unless
-// everyFault.
+// The same for scenarios without a file and with many variants. Unless everyFault, fewer allocations fail, and each variant runs in one
+// of the two ways.
 void failSomeAllocations(const char* name, Scenario* scenario, int variants);
 
 // State of an allocator whose n-th allocation fails (-1: none) and, with stayEmpty, all after it. openFailing

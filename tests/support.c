@@ -331,7 +331,7 @@ double errorAgainstPaths(const vplScene* scene, const vplImage* image)
     return sqrt(fmax(0, square) * (double)values) / sum;
 }
 
-// Under the thread sanitizer threads race, or not, whatever their instructions are.
+// The thread sanitizer looks for races, which do not depend on the instruction set.
 #ifdef VPL_TEST_PTHREADS
 enum { MOST_WORKERS = 3, ISAS = VPL_ISA_SCALAR };
 #else

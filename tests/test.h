@@ -20,7 +20,7 @@
 // Defines and registers a test. TEST(SharedEdgeIsCoveredOnce, 2) { ... } gets a `context` with two threads,
 // which must hold no memory at the end of the test; TEST_ALONE(...) gets none. SLOW as last argument marks
 // tests that take half a second or more, because they measure statistics or try many cases: `vpl-tests --quick`
-// leaves them out. Tests of memory that runs out are not marked: they are what sanitizers are for.
+// leaves them out. Most tests of allocations that fail are not marked, because sanitizers need them.
 #define TEST(name, ...)                                                                                      \
     static void name(vplContext* context);                                                                   \
     REGISTER_TEST(name, .run = name, .workers = __VA_ARGS__)                                                 \

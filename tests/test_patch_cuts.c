@@ -484,7 +484,8 @@ static void compareEnergies(vplContext* context, int first, int end)
         compareEnergy(scene, truth, 2000, false, which);
         compareEnergy(scene, truth, 2000, true, which);
         if (which == 0 || which == 5) {
-            compareEnergy(scene, truth, 8000, which != 0, which);
+            compareEnergy(scene, truth, 8000, false, which);
+            compareEnergy(scene, truth, 8000, true, which);
         }
         vplImage_Destroy(truth);
         vplScene_Destroy(scene);
@@ -533,7 +534,7 @@ static double meanBesideTheHole(const vplImage* image)
 // Four pictures of 4,096 paths per pixel have means of 2.43e-5 to 2.55e-5.
 TEST(LightComesThroughAKeyhole, 2, SLOW)
 {
-    enum { SEEDS = 4 };
+    enum { SEEDS = 6 };
     vplScene* scene = openScene(context, "tests/data/keyhole.json");
     vplRenderOptions o = radiosityOptions(2000);
     o.output.width = 64;
@@ -561,10 +562,10 @@ TEST(LightComesThroughASmallKeyhole, 2, SLOW)
     vplRenderOptions o = radiosityOptions(8000);
     o.output.width = 64;
     o.output.height = 36;
-    for (o.seed = 1; o.seed < 2; o.seed++) {
+    for (o.seed = 0; o.seed < 2; o.seed++) {
         vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
         const double ratio = meanBesideTheHole(image) / 4.75e-6;
-        assertNear(ratio, 1, 0.2, "energy", (int)o.seed); // measured: 0.88 to 1.11
+        assertNear(ratio, 1, 0.2, "energy", (int)o.seed); // measured: 0.84 to 1.13
         vplImage_Destroy(image);
     }
     vplScene_Destroy(scene);

@@ -6,6 +6,7 @@
 #define VPL_GEOMETRY_BOX_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 #if defined(__SSE2__)
@@ -57,6 +58,15 @@ static inline vplBox vplBox_Empty(void)
 static inline vplBox vplBox_Join(vplBox a, vplBox b)
 {
     return (vplBox){vplFour_Min(a.low, b.low), vplFour_Max(a.high, b.high)};
+}
+
+static inline bool vplBox_Overlaps(vplBox a, vplBox b)
+{
+    bool overlaps = true;
+    for (int k = 0; k < 3; k++) {
+        overlaps = overlaps && a.low[k] <= b.high[k] && b.low[k] <= a.high[k];
+    }
+    return overlaps;
 }
 
 // Triangle bounds, padded by the largest rounding error of the triangle test: two units in the last place of

@@ -71,6 +71,9 @@ bool vplBvh_Refit(vplBvh* bvh, const vplGeometry* geometry, const uint8_t* chang
 // metres.
 double vplBvh_Cost(const vplBvh* bvh);
 
+// The box of three corners, padded as vplBoundTriangle says.
+vplBox vplBoundCorners(const vplVec3 corners[3]);
+
 // The box of a triangle, and its area in high[3].
 vplBox vplBoundItem(const vplGeometry* geometry, int triangle);
 

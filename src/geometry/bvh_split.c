@@ -32,14 +32,19 @@ typedef struct Collection {
     vplBuildRange* ranges; // by chunk of triangles; items of a chunk begin at the index of its first triangle
 } Collection;
 
+vplBox vplBoundCorners(const vplVec3 corners[3])
+{
+    vplFour corner[3];
+    for (int i = 0; i < 3; i++) {
+        corner[i] = (vplFour){corners[i].x, corners[i].y, corners[i].z, 0};
+    }
+    return vplBoundTriangle(corner);
+}
+
 vplBox vplBoundItem(const vplGeometry* g, int triangle)
 {
     const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
-    vplFour corner[3];
-    for (int i = 0; i < 3; i++) {
-        corner[i] = (vplFour){t.corner[i].x, t.corner[i].y, t.corner[i].z, 0};
-    }
-    vplBox box = vplBoundTriangle(corner);
+    vplBox box = vplBoundCorners(t.corner);
     box.low[3] = 0;
     box.high[3] = (float)vplTriangle_Area(&t);
     return box;

@@ -168,8 +168,8 @@ vplResult vplReconsiderEarly(vplRenderer* renderer, double asked, bool* doneOut,
 // paths says that they need more rays.
 vplResult vplTurnBack(vplRenderer* renderer, double asked, bool* doneOut);
 
-// Replaces a plan of patches, of which there is no picture yet and for which the time is too short, by one with this share of its
-// patches, or, where these are hardly more than those before, by virtual lights: each of their passes is short.
+// Replaces a plan of patches that would take too long, before it has a picture: by a plan with this share of its patches or, if these
+// are hardly more than the plan before had, by virtual lights, whose passes are short.
 vplResult vplFitPatches(vplRenderer* renderer, double share);
 
 // True if the options' count of passes or paths is reached.

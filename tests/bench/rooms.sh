@@ -1,8 +1,8 @@
 #!/bin/sh
-# Radiosity against paths: tests/bench/rooms.sh BUILD SIZE SPP "OPTIONS" SCENE... prints processor time, sides, energy and relmse of indirect light
-# for each scene and each of the settings below, seen through pixel centres. Two halves of SPP paths per pixel are the
-# truth; their noise cancels in relmse, the mean of (x - a) (x - b) / (m + 0.01)^2, where m is the mean of a and b. OPTIONS are for all renders.
-# SETTINGS in the environment replaces the settings, one a line.
+# Radiosity against paths: tests/bench/rooms.sh BUILD SIZE SPP "OPTIONS" SCENE... prints processor time, patches that light reaches, the
+# most memory, energy and relmse of indirect light for each scene and setting, seen through pixel centres. The truth is two pictures a
+# and b of SPP paths per pixel each, whose noise cancels in relmse: the mean of (x - a) (x - b) / (m + 0.01)^2, m = (a + b) / 2.
+# All renders get OPTIONS. SETTINGS in the environment replaces the settings below, one a line.
 build=$1 size=$2 spp=$3 options=$4
 shift 4
 scratch=$(mktemp -d)
@@ -40,5 +40,5 @@ patches = json.load(open(os.path.join(folder, "stats.json")))["lit_patches"]
 print("%-16s %-42s %8.1f %8d %8.0f %8.3f %8.4f" % (os.path.basename(scene).replace(".json", ""), setting, float(seconds), patches,
       int(kib) / 1024, x.sum() / m.sum(), np.mean((x - a) * (x - b) / (m + 0.01) ** 2)), flush=True)
 END
-    done
+    done || exit 1
 done

@@ -27,7 +27,7 @@ static const double PEAK = 0.05;
 // Each dim side casts about RAYS_OF_DIM_SIDE rays to search for light from sides that are not dim; all together at most MOST_DIM_RAYS.
 static const double RAYS_OF_DIM_SIDE = 16384, MOST_DIM_RAYS = 0x1p26;
 
-// Rays between a dim group and one that is not dim go through a small opening if at most this fraction of them passes.
+// If at most this fraction of the rays between a dim group and a brighter one is unoccluded, the opening between them is small.
 static const double SMALL_OPENING = 0.25;
 
 // Up to so many sides a link may err by as much as is asked for; beyond by less, as one over the root of their number.

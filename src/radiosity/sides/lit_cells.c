@@ -136,7 +136,7 @@ static int darknessOf(const vplLitSearch* s, int side, int triangle, int64_t* ra
     return !dark ? 0 : lit < 0 ? 1 : 2 + lit;
 }
 
-// Only triangles in a box of dark sides may be beside them.
+// Tests those triangles of a group that lie in the box of a dark room. Others have no part in it.
 static void findDarkTriangles(const vplLitSearch* s, int side, int64_t* rays)
 {
     const vplPatchParts parts = vplPatches_GetParts(s->patches, side / 2);
@@ -156,7 +156,7 @@ static bool isSmall(const vplLitSearch* s, int patch)
 
 static void findCells(const vplLitSearch* s, int side, int64_t* rays)
 {
-    if (s->open[side] != 0 && vplPatches_IsGroup(s->patches, side / 2)) {
+    if (s->dark != NULL && s->open[side] != 0 && vplPatches_IsGroup(s->patches, side / 2)) {
         findDarkTriangles(s, side, rays);
     }
     if (s->open[side] == 0 || isSmall(s, side / 2) || isWhole(s, side, rays)) {

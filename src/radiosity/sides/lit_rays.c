@@ -91,33 +91,23 @@ void vplLitSearch_ResolveOverlap(const vplLitSearch* s, vplLitHit* hit, int64_t*
 vplBox vplLitSearch_BoxOf(const vplLitSearch* s, int node)
 {
     vplVec3 corners[3];
-    vplFour four[3];
     vplPatchNode_GetCorners(s->patches, node, false, corners);
-    for (int k = 0; k < 3; k++) {
-        four[k] = (vplFour){corners[k].x, corners[k].y, corners[k].z, 0};
-    }
-    return vplBoundTriangle(four);
+    return vplBoundCorners(corners);
 }
 
 int vplLitSearch_FindDarkBox(const vplLitSearch* s, vplBox box)
 {
     int found = 0;
-    for (; found < s->darkBoxCount; found++) {
-        const vplBox* dark = &s->darkBoxes[found];
-        bool overlap = true;
-        for (int k = 0; k < 3; k++) {
-            overlap = overlap && box.low[k] <= dark->high[k] && dark->low[k] <= box.high[k];
-        }
-        if (overlap) {
-            break;
-        }
+    while (found < s->darkBoxCount && !vplBox_Overlaps(box, s->darkBoxes[found])) {
+        found++;
     }
     return found;
 }
 
 // ---- samples
 
-// A sample's random numbers are numbered by their use: its position, up to five rays, the side that was found, and the light source.
+// A sample's random numbers are numbered by their use: its position, up to five rays, the side of `found` that it looks at, and the
+// light source.
 enum { POSITION = 0, FIRST_RAY = 1, FOUND = 6, LIGHT_SOURCE = 7 };
 
 static vplRandom4 randomOf(const vplLitSearch* s, const vplLitSample* sample, int use)

@@ -32,12 +32,12 @@ typedef struct vplLitSearch {
     double meanArea;     // of patches
     int pass;            // selects other random numbers in each pass
     uint16_t* darkShare; // per side: passes that give a dark side its share of the samples; else undefined
-    int* found;          // dark sides that light was found to reach after all
+    int* found;          // sides that count as dark until a pass of closeDarkRooms found light on them
     int foundCount;
     int darkPass;      // passes over dark sides so far
     bool spreads;      // the last of them found light, so that other dark sides may have it from there
     uint8_t* dark;     // vplPatchSides.dark
-    vplBox* darkBoxes; // of sides that viewpoints see and light does not reach; sides that touch share one
+    vplBox* darkBoxes; // of dark rooms, where triangles are in groups
     int darkBoxCount;
     int64_t rays;
     vplContext* context;
@@ -125,7 +125,7 @@ typedef struct vplLitSample {
 // The sample's point on the side: stratified, and clear of the patch's edges, where walls meet.
 vplVec3 vplLitSample_OnSide(const vplLitSearch* search, vplLitSample* sample);
 
-// Tests whether light reaches the sample from a random one of search->found.
+// Tests whether the lit point of a random side of search->found is visible from the sample. *fromOut: that point.
 bool vplLitSample_SeesFound(const vplLitSearch* search, const vplLitSample* sample, int64_t* rays,
                             vplVec3* fromOut);
 

@@ -17,8 +17,7 @@ enum {
     MOST_PASSES = 16,       // each pass finds one more room behind rooms
     DARK_SAMPLES = 1 << 18, // on all surfaces of the scene; dark sides get them in proportion to their area
     MOST_DARK_PASSES = 1 << 14,
-    ROOM =
-        128 // fewer dark sides than one for so many patches are no room, but crevices: their surroundings are not tested
+    ROOM = 128 // dark sides are a room if they are more than one in ROOM patches; fewer are crevices
 };
 
 // The distance from a sample's offset point to the two points beside it (isBroad), as a multiple of the height of the offset point
@@ -175,7 +174,7 @@ static int countUnlit(const vplLitSearch* s)
     return unlit;
 }
 
-// Samples of a dark side are in proportion to its area. The triangles of groups are small enough for one pass.
+// The number of samples on a dark side is proportional to its area. Groups are small: the samples of one pass are enough for them.
 static void findDarkShares(vplLitSearch* s)
 {
     for (int side = 0; side < 2 * s->patches->patchCount; side++) {
@@ -187,14 +186,14 @@ static void findDarkShares(vplLitSearch* s)
     }
 }
 
-// Makes the results of a pass over dark sides effective.
+// Makes the results of a pass over dark sides effective, and counts the pass.
 static void adoptFound(vplLitSearch* s)
 {
     for (int side = 0; side < 2 * s->patches->patchCount; side++) {
         if (s->fromEye[side] && !s->nextFromEye[side]) {
             s->found[s->foundCount++] = side;
-            s->litPoint[side] =
-                s->nextLitPoint[side]; // the one before is seen from a viewpoint, perhaps across a wall
+            // The point so far is one that a viewpoint sees. Of a group it may lie behind a wall, in the dark.
+            s->litPoint[side] = s->nextLitPoint[side];
         }
         s->fromEye[side] = s->nextFromEye[side];
     }
@@ -213,7 +212,8 @@ static int countDark(const vplLitSearch* s, int* lackingOut)
     return count;
 }
 
-// Adds the box of a dark side. Boxes that overlap become one; so does what comes when all are in use, with the last.
+// Adds the box of a dark side to that of a room which it overlaps, or begins another room. When all boxes are in use, the last one takes
+// all that is left.
 static void addDarkBox(vplLitSearch* s, int side)
 {
     const vplPatchParts parts = vplPatches_GetParts(s->patches, side / 2);
@@ -250,13 +250,12 @@ static vplResult closeDarkRooms(vplLitSearch* s)
         left = countDark(s, &lacking);
         s->spreads = left < before;
     }
+    const bool beside = s->patches->groupCount > 0 && left * (int64_t)ROOM > s->patches->patchCount;
     s->pass = pass;
     for (int side = 0; side < sides && left > 0; side++) {
-        if (s->fromEye[side]) {
-            s->open[side] = 0;
-            if (left * (int64_t)ROOM > s->patches->patchCount) {
-                addDarkBox(s, side);
-            }
+        s->open[side] = s->fromEye[side] ? 0 : s->open[side];
+        if (s->fromEye[side] && beside) {
+            addDarkBox(s, side);
         }
         s->nextOpen[side] = s->open[side];
     }

@@ -103,7 +103,8 @@ static void openWholeTriangles(vplLitSearch* s)
     }
 }
 
-static vplResult search(vplLitSearch* s)
+// Allocates what stays in `arena`.
+static vplResult search(vplLitSearch* s, vplArena* arena)
 {
     findHeights(s);
     const bool hasSources = s->emission->sourceCount > 0;
@@ -112,6 +113,10 @@ static vplResult search(vplLitSearch* s)
     }
     if (hasSources || s->def->viewpointCount > 0) {
         TRY(vplLitSearch_FindSides(s));
+    }
+    if (s->darkBoxCount > 0) {
+        s->dark = vplArena_AllocZero(arena, (size_t)s->geometry->triangleCount, 1);
+        TRY(vplArena_Check(arena));
     }
     TRY(vplLitSearch_FindCells(s));
     if (s->def->wholeTriangles) {
@@ -231,14 +236,10 @@ static vplResult findSides(const vplPatchSidesDef* def, vplArena* scratch, vplPa
                       .darkBoxes = darkBoxes,
                       .context = sides->context};
     TRY(reserve(scratch, &s));
-    if (patches->groupCount > 0) {
-        s.dark = vplArena_AllocZero(sides->arena, (size_t)s.geometry->triangleCount, 1);
-        TRY(vplArena_Check(sides->arena));
-    }
     vplEmission* emission = NULL;
     TRY(vplEmission_Create(s.geometry, def->emitters, def->emitterCount, &emission));
     s.emission = emission;
-    const vplResult result = search(&s);
+    const vplResult result = search(&s, sides->arena);
     vplEmission_Destroy(emission);
     TRY(result);
     return listSides(&s, sides);

@@ -129,13 +129,17 @@ int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray)
     return vplPatchSides_Met(sides, &hit, ray->direction);
 }
 
+// Share of the way from a corner of a triangle to its centroid.
+static const float NEAR_CORNER = 0.125f;
+
 vplVec3 vplNearCorner(const vplVec3 corners[3], int k)
 {
     const vplVec3 centre = vplScale(1 / 3.0f, vplAdd(corners[0], vplAdd(corners[1], corners[2])));
-    return vplAdd(corners[k], vplScale(0.125f, vplSub(centre, corners[k])));
+    return vplAdd(corners[k], vplScale(NEAR_CORNER, vplSub(centre, corners[k])));
 }
 
-// Tests whether light reaches a point of a triangle of a group. A wall that crosses the triangle is between its parts.
+// Tests whether light reaches a point of a triangle of a group. From the dark part of a triangle that a wall crosses, the wall hides the
+// lit corner.
 static bool isLitAt(const vplPatchSides* sides, const vplHit* hit, int face)
 {
     const int code = sides->dark == NULL ? 0 : sides->dark[hit->triangle] >> 4 * face & 15;

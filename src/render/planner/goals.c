@@ -215,8 +215,8 @@ static bool isClear(const vplRenderer* r, double asked, bool plansAgain, double 
            (double)r->judged.rays * VPL_PATH_RAY > 0.25 * spent;
 }
 
-// A picture of patches has no noise, and few pixels have most of its error. More pixels are compared for errors below 4 %, and in
-// scenes that are not plain.
+// Few pixels of a picture by patches have most of its error. So the truth has more pixels for errors below 4 %, and in scenes that are
+// not plain.
 static int countTruthPixels(const vplRenderer* r)
 {
     const vplRenderOptions* o = &r->plan->options;

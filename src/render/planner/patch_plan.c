@@ -90,7 +90,7 @@ bool vplMayTryPatches(const vplRunner* r, const vplPlan* p, const vplRenderOptio
 // lights leaves 70 to 180 % of error, 1,000 patches leave 9 % in the same time.
 static const double FEW_REACH = 0.4;
 
-// The share is too uncertain with fewer virtual lights.
+// The share that reaches the picture is too uncertain if the look has fewer virtual lights.
 enum { ENOUGH_LIGHTS = 64 };
 
 // Rays of the final gather, where patches come first. Light behind doors is finer than patches: in the flat 1,000 patches leave 13 %
@@ -101,8 +101,8 @@ static int firstGather(const vplRenderOptions* o)
     return o->stop.maxError >= 0.15 ? 4 : 16;
 }
 
-// Virtual lights need HIDDEN_RAYS / (worth error^2) rays per pixel; `worth` is that of vplLook. In the flat (worth 0.046) errors of 20, 10
-// and 5 % took 26 to 52 / error^2 rays per pixel, so the number is 1.2 to 2.4.
+// Virtual lights are foreseen to need HIDDEN_RAYS / (worth * error^2) rays per pixel, where `worth` is vplLook's. The flat has a worth of
+// 0.046 and needed 26 / error^2 to 52 / error^2 rays per pixel for 20, 10 and 5 %: a numerator of 1.2 to 2.4.
 static const double HIDDEN_RAYS = 2.4;
 
 double vplForeseenLightRays(const vplPlan* p)

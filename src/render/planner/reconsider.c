@@ -95,7 +95,7 @@ static vplResult leavePatches(vplRenderer* r, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// More patches are worth their time if they are at least so many times as many as before.
+// More patches are worth their time if their number is at least this factor above that of the plan before.
 static const double WORTHWHILE = 1.3;
 
 vplResult vplFitPatches(vplRenderer* r, double share)
@@ -205,9 +205,9 @@ static bool hasRoomForWiderTruth(const vplRenderer* r)
     return pixels <= VPL_MOST_TRUTH_PIXELS && pixels <= 0.5 * r->asked.output.width * r->asked.output.height;
 }
 
-// If the error is not known well enough for a decision, traces more paths of the truth, where the truth has cost less than `paths` rays.
-// Where more paths do not make its spread smaller, because few pixels have most of the error, takes more pixels instead, if
-// the truth has cost less than `pixels` rays. *moreOut: it did, and the picture is to be judged again.
+// Improves the truth if it does not tell the error well enough for a decision: by more paths per pixel, if it has cost less than `paths`
+// rays so far; or, if more paths no longer reduce its spread because few pixels have most of the error, by more pixels, if it has cost less
+// than `pixels` rays. *moreOut: the truth was improved, and the picture must be judged again.
 static vplResult learnMore(vplRenderer* r, const vplErrorState* s, double asked, double paths, double pixels,
                            bool* moreOut)
 {
