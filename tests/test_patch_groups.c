@@ -328,6 +328,51 @@ TEST(ScenesWithFewTrianglesHaveNoGroups, 2)
     vplScene_Destroy(scene);
 }
 
+// A closed cube with a ball of 20 times 4^levels triangles.
+static vplScene* cubeWithBall(vplContext* context, int levels, float radius)
+{
+    vplScene* scene = closedCubeScene(context, 0.7f, 0);
+    Shape ball = icosphere(levels);
+    vplObjectDef object = vplDefaultObjectDef();
+    placeShape(&ball, radius, (double[3]){0, 0, 0}, vplVec(0.1f, -0.5f, -0.2f));
+    assert_int_equal(tryAddShape(scene, &ball, false, &object), VPL_SUCCESS);
+    freeShape(&ball);
+    aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
+    return scene;
+}
+
+// Thousands of triangles that are far smaller than patches share them even where there are fewer triangles than patches, because links
+// between all of them would take hours. Triangles as large as patches stay single, and so do few.
+TEST(ManySmallTrianglesAreGrouped, 2)
+{
+    static const struct {
+        int levels;
+        float radius;
+        int patches;
+        vplPatchGroups groups;
+    } cases[] = {{5, 0.02f, 30000, VPL_PATCH_GROUPS_ON},   // 20,480 of less than 1/1,000 of a patch
+                 {5, 0.02f, 163000, VPL_PATCH_GROUPS_ON},  // just an eighth of the patches
+                 {5, 0.02f, 165000, VPL_PATCH_GROUPS_OFF}, // fewer
+                 {5, 0.4f, 30000, VPL_PATCH_GROUPS_OFF},   // 0.11 of a patch
+                 {4, 0.02f, 6000, VPL_PATCH_GROUPS_OFF}};  // all pairs of 5,120 are fast
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        vplScene* scene = cubeWithBall(context, cases[i].levels, cases[i].radius);
+        vplRenderOptions o = radiosityOptions(cases[i].patches);
+        vplPlan* plan = NULL;
+        o.output.show = VPL_SHOW_NORMALS; // how patches are made is decided, but none is made
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->options.radiosity.groups, cases[i].groups);
+        vplPlan_Destroy(plan);
+        vplScene_Destroy(scene);
+    }
+    vplGeometry* g = buildGeometry(cubeWithBall(context, 5, 0.02f));
+    vplPatches* p = groupsOf(g, 30000, 0, true);
+    assert_true(p->groupCount > 20 && p->groupCount < 1000);
+    assertNear(p->patchCount / 30000.0, 1, 0.1, "patches", 0);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+}
+
 // One patch is too few for any scene; as few as normals allow are made, adaptive ones too.
 TEST(OnePatchIsAsFewAsPossible, 2)
 {

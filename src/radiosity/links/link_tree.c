@@ -27,7 +27,7 @@ static const double UNEVEN = 0.1;
 static const double FLAT = 1e-5;
 
 // A group is dim if it has less than DIM times the particle hits that the mean over all sides predicts for its area. Groups for which
-// fewer than LEAST_HITS are predicted are too small to tell; they are dim if their parent is.
+// fewer than LEAST_HITS are predicted are too small to tell, and are taken as their parent.
 static const double DIM = 1.0 / 32, LEAST_HITS = 128;
 
 typedef struct Build {
@@ -240,34 +240,40 @@ static int halve(const Build* b, const vplLinkNode* node, int depth)
     return before > 0 && before < node->count ? before : node->count / 2;
 }
 
-static bool isDim(const Build* b, const vplLinkNode* node)
+// Finds node->lit and node->dim, which are those of its parent before.
+static void findLit(const Build* b, vplLinkNode* node)
 {
     const double expected = b->meanHits * (double)node->area;
     double hits = 0;
     for (int i = 0; i < node->count && expected >= LEAST_HITS; i++) {
         hits += b->hits[b->tree->order[node->first + i]];
     }
-    return expected >= LEAST_HITS && hits < DIM * expected;
+    if (expected >= LEAST_HITS) {
+        node->lit = (float)(hits / expected);
+        node->dim = node->dim || hits < DIM * expected;
+    }
 }
 
-// Builds the tree below a node whose sides are known. node->dim: its parent is dim.
+// Builds the tree below a node whose sides are known, and `lit` and `dim` of its parent.
 static void buildNode(const Build* b, int index, int depth)
 {
     struct vplLinkTree* tree = b->tree;
     vplLinkNode* node = &tree->nodes[index];
     sumNode(b, node);
     measureNode(b, node);
-    node->dim = node->dim || isDim(b, node);
+    findLit(b, node);
     if (node->count == 1) {
         return;
     }
     const int before = halve(b, node, depth), child = tree->nodeCount;
     node->children = child;
     tree->nodeCount += 2;
-    tree->nodes[child] =
-        (vplLinkNode){.children = -1, .first = node->first, .count = before, .dim = node->dim};
-    tree->nodes[child + 1] = (vplLinkNode){
-        .children = -1, .first = node->first + before, .count = node->count - before, .dim = node->dim};
+    vplLinkNode part = {
+        .children = -1, .first = node->first, .count = before, .lit = node->lit, .dim = node->dim};
+    tree->nodes[child] = part;
+    part.first += before;
+    part.count = node->count - before;
+    tree->nodes[child + 1] = part;
     buildNode(b, child, depth + 1);
     buildNode(b, child + 1, depth + 1);
 }
@@ -314,7 +320,7 @@ vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct 
         tree->order[i] = i;
     }
     if (sides->count > 0) {
-        tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = sides->count};
+        tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = sides->count, .lit = 1};
         tree->nodeCount = 1;
         const Build build = {sides->sides,    sides->patches, sides->hits, tree, expectedRadiosity(sides),
                              meanHits(sides), scratch};
