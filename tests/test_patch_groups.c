@@ -11,7 +11,15 @@
 
 // ---- scenes
 
-// A closed cube with balls of 1,280 triangles in it. `emission`: of all surfaces.
+static void addBall(vplScene* scene, Shape* ball)
+{
+    vplObjectDef object = vplDefaultObjectDef();
+    object.material = 1;
+    assert_int_equal(tryAddShape(scene, ball, false, &object), VPL_SUCCESS);
+    freeShape(ball);
+}
+
+// A closed cube with balls of 20 times 4^levels triangles in it. `emission`: of all surfaces.
 static vplScene* ballRoom(vplContext* context, int balls, int levels, float rho, float emission)
 {
     Dice dice = {7, 0};
@@ -19,12 +27,9 @@ static vplScene* ballRoom(vplContext* context, int balls, int levels, float rho,
     for (int i = 0; i < balls; i++) {
         const double turn[3] = {(double)roll(&dice, 0, 3), (double)roll(&dice, 0, 3), 0};
         Shape ball = icosphere(levels);
-        vplObjectDef object = vplDefaultObjectDef();
         placeShape(&ball, balls > 1 ? roll(&dice, 0.1f, 0.3f) : 0.4f, turn,
                    balls > 1 ? rollVec(&dice, 0.6f) : vplVec(0.1f, -0.5f, -0.2f));
-        object.material = 1;
-        assert_int_equal(tryAddShape(scene, &ball, false, &object), VPL_SUCCESS);
-        freeShape(&ball);
+        addBall(scene, &ball);
     }
     return scene;
 }
@@ -328,21 +333,19 @@ TEST(ScenesWithFewTrianglesHaveNoGroups, 2)
     vplScene_Destroy(scene);
 }
 
-// A closed cube with a ball of 20 times 4^levels triangles.
+// A closed cube with one ball of this radius.
 static vplScene* cubeWithBall(vplContext* context, int levels, float radius)
 {
     vplScene* scene = closedCubeScene(context, 0.7f, 0);
     Shape ball = icosphere(levels);
-    vplObjectDef object = vplDefaultObjectDef();
     placeShape(&ball, radius, (double[3]){0, 0, 0}, vplVec(0.1f, -0.5f, -0.2f));
-    assert_int_equal(tryAddShape(scene, &ball, false, &object), VPL_SUCCESS);
-    freeShape(&ball);
+    addBall(scene, &ball);
     aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
     return scene;
 }
 
-// Thousands of triangles that are far smaller than patches share them even where there are fewer triangles than patches, because links
-// between all of them would take hours. Triangles as large as patches stay single, and so do few.
+// Thousands of triangles that are far smaller than patches share patches, even where there are fewer triangles than patches: links
+// between all of them would take hours. Triangles as large as patches stay single, and so do a few thousand small ones.
 TEST(ManySmallTrianglesAreGrouped, 2)
 {
     static const struct {
@@ -351,8 +354,8 @@ TEST(ManySmallTrianglesAreGrouped, 2)
         int patches;
         vplPatchGroups groups;
     } cases[] = {{5, 0.02f, 30000, VPL_PATCH_GROUPS_ON},   // 20,480 of less than 1/1,000 of a patch
-                 {5, 0.02f, 163000, VPL_PATCH_GROUPS_ON},  // just an eighth of the patches
-                 {5, 0.02f, 165000, VPL_PATCH_GROUPS_OFF}, // fewer
+                 {5, 0.02f, 163000, VPL_PATCH_GROUPS_ON},  // just over an eighth of the patches
+                 {5, 0.02f, 165000, VPL_PATCH_GROUPS_OFF}, // just under an eighth
                  {5, 0.4f, 30000, VPL_PATCH_GROUPS_OFF},   // 0.11 of a patch
                  {4, 0.02f, 6000, VPL_PATCH_GROUPS_OFF}};  // all pairs of 5,120 are fast
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

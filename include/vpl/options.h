@@ -155,8 +155,8 @@ typedef enum vplPatchCuts {
 // Groups of small triangles.
 typedef enum vplPatchGroups {
     VPL_PATCH_GROUPS_AUTO =
-        0, // on where there are more triangles than patches are asked for, or more than 8,192 and an eighth of the patches that are
-           // smaller than 1/16 of the mean patch; off with patchSize or VPL_FORM_FACTORS_INCENTRE
+        0, // on where there are more triangles than patches are asked for, or where many triangles are small: more than 8,192, and more
+    // than one for eight patches, have less than 1/16 of the mean patch's area; off with patchSize or VPL_FORM_FACTORS_INCENTRE
     VPL_PATCH_GROUPS_OFF, // each triangle is at least one patch
     VPL_PATCH_GROUPS_ON
 } vplPatchGroups;

@@ -3,6 +3,7 @@
 #include "render/plan.h"
 
 #include "geometry/triangle.h"
+#include "math/scalar.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/sides/side.h"
 #include "render/show.h"
@@ -44,27 +45,21 @@ static bool arePatchesMade(const vplPlan* p)
     return p->options.radiosity.placement == VPL_PATCHES_UNIFORM && p->showsPatches;
 }
 
-// A triangle is small if its area is below 1/SMALL of the mean patch's. More than MANY_SMALL of them, which all pairs of sides have no
-// memory for, share patches if they are more than 1/SMALL_SHARE of the patches: links between all of them took over half an hour and
-// 4 GB in a furnished flat with 100,000 patches, and take 40 s and 0.7 GB between groups.
+// A triangle is small if its area is below 1/SMALL of the mean patch's. Small triangles share patches if there are more than MANY_SMALL
+// of them, so that form factors of all pairs would not fit into memory, and more than one for SMALL_SHARE patches. A furnished flat with
+// 100,000 patches took over half an hour of a processor and 4 GB without groups, and takes 64 s and 0.7 GB with them.
 enum { SMALL = 16, MANY_SMALL = VPL_ALL_PAIRS / 2, SMALL_SHARE = 8 };
 
-// Counts small triangles, if there may be enough of them to share patches; otherwise returns 0.
+// Returns the number of small triangles if they share patches, otherwise 0.
 static int countSmall(const vplGeometry* g, int patches)
 {
-    if (g->triangleCount <= MANY_SMALL || g->triangleCount <= patches / SMALL_SHARE) {
-        return 0;
-    }
-    double area = 0;
-    for (int i = 0; i < g->triangleCount; i++) {
-        area += vplGeometry_TriangleArea(g, i);
-    }
-    const double most = area / patches / SMALL;
+    const int few = vplMaxi(MANY_SMALL, patches / SMALL_SHARE);
+    const double most = vplGeometry_Area(g) / patches / SMALL;
     int count = 0;
-    for (int i = 0; i < g->triangleCount; i++) {
+    for (int i = 0; i < g->triangleCount && g->triangleCount > few; i++) {
         count += vplGeometry_TriangleArea(g, i) < most;
     }
-    return count > MANY_SMALL && count > patches / SMALL_SHARE ? count : 0;
+    return count > few ? count : 0;
 }
 
 // Decides whether small triangles share patches, before patches are made: they do where there are more triangles than --patches

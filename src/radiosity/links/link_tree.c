@@ -27,7 +27,7 @@ static const double UNEVEN = 0.1;
 static const double FLAT = 1e-5;
 
 // A group is dim if it has less than DIM times the particle hits that the mean over all sides predicts for its area. Groups for which
-// fewer than LEAST_HITS are predicted are too small to tell, and are taken as their parent.
+// fewer than LEAST_HITS are predicted are too small to tell; they have the values of their parent.
 static const double DIM = 1.0 / 32, LEAST_HITS = 128;
 
 typedef struct Build {
@@ -240,7 +240,7 @@ static int halve(const Build* b, const vplLinkNode* node, int depth)
     return before > 0 && before < node->count ? before : node->count / 2;
 }
 
-// Finds node->lit and node->dim, which are those of its parent before.
+// Finds node->lit and node->dim. Before the call they have its parent's values, which a node that is too small to tell keeps.
 static void findLit(const Build* b, vplLinkNode* node)
 {
     const double expected = b->meanHits * (double)node->area;
@@ -254,7 +254,7 @@ static void findLit(const Build* b, vplLinkNode* node)
     }
 }
 
-// Builds the tree below a node whose sides are known, and `lit` and `dim` of its parent.
+// Builds the tree below a node, which has its range of sides and the `lit` and `dim` of its parent.
 static void buildNode(const Build* b, int index, int depth)
 {
     struct vplLinkTree* tree = b->tree;

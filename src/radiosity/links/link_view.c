@@ -15,10 +15,13 @@ static const double HIDING_RAYS = 16;
 
 // Fewer rays are enough where each row is scaled to the share of light that rays measured, which restores what this test
 // misses; at most two rays per pair of sides, because the sides by themselves would cast four. Without that scaling, so few
-// rays cost a room that is lit through a door ajar a twentieth of its light. With it, they still cost the rooms of a furnished flat that
-// have a sixth of the mean light 4 % of theirs. So a pair takes as many times more rays as it has fewer particle hits than
-// the mean, at most 1/SHADED times; below SHADED its sides are tried by themselves, too (energy 0.960 -> 0.98 at 50,000 patches).
-static const double FEWER_HIDING_RAYS = 4, HIDING_RAYS_OF_SIDES = 2, SHADED = 0.25;
+// rays cost a room that is lit through a door ajar a twentieth of its light.
+static const double FEWER_HIDING_RAYS = 4, HIDING_RAYS_OF_SIDES = 2;
+
+// With that scaling, so few rays still cost rooms that have a sixth of the mean light 4 % of theirs (a furnished flat, 50,000 patches).
+// So the number of rays is divided by the lower `lit` of the two groups, but by no less than SHADED; and where `lit` is below
+// SHADED, sides are tried by themselves as well. These rooms then lose 2 %.
+static const double SHADED = 0.25;
 
 // The first rays of a pair of groups: one packet.
 enum { FEW_RAYS = VPL_RAY_PACKET };
@@ -65,6 +68,7 @@ void vplCastPairRays(const vplJudgedPair* pair, const vplLinkTerms* terms, int f
     vplCastLinkRays(pair->work, &sight, seen, &pair->answer->rays);
 }
 
+// The `lit` of the group that fewer particles hit.
 static double leastLit(const vplJudgedPair* pair)
 {
     return (double)fminf(pair->p->lit, pair->q->lit);
@@ -161,8 +165,9 @@ static bool sidesDiffer(const vplJudgedPair* pair, double open, double share)
 {
     const double chance = sqrt(fmax(0, share * (1 - share)) / RAYS_OF_SIDE);
     const double most = DIFFERENT * pair->work->allowed / open + CHANCE * chance;
-    const bool few = vplRowsAreScaled(pair) && leastLit(pair) >= SHADED;
-    if (pair->work->leafAt == NULL || few || fmax(share, 1 - share) <= most) {
+    const bool coarse =
+        vplRowsAreScaled(pair) && leastLit(pair) >= SHADED; // scaled rows restore what is missed
+    if (pair->work->leafAt == NULL || coarse || fmax(share, 1 - share) <= most) {
         return false;
     }
     const int32_t p = pair->ids->p, q = pair->ids->q;

@@ -14,9 +14,8 @@ typedef struct vplLinkNode {
     int first, count; // in vplLinkTree.order
     bool flat;        // all sides are in one plane, so none sees another
     bool group;       // one side of a group of triangles
-    float
-        lit; // particle hits, over those that the mean of all sides predicts; of a small node, those of its parent
-    bool dim; // it has far fewer hits than predicted, or its parent has (link_tree.c)
+    float lit;        // particle hits over those that the mean of all sides predicts
+    bool dim;         // `lit` is very low here or in its parent (link_tree.c)
     float area;
     float brightness;           // expected radiosity over the expected mean of all sides; at least 1
     vplVec3 low, high, centre;  // bounds, metres, and their centre

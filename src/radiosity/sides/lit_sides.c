@@ -174,7 +174,8 @@ static int countUnlit(const vplLitSearch* s)
     return unlit;
 }
 
-// The number of samples on a dark side is proportional to its area. Groups are small: the samples of one pass are enough for them.
+// The number of samples on a dark side is proportional to its area. Triangles of groups are small, so one pass has enough samples for
+// a group.
 static void findDarkShares(vplLitSearch* s)
 {
     for (int side = 0; side < 2 * s->patches->patchCount; side++) {

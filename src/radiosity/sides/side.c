@@ -129,7 +129,7 @@ int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray)
     return vplPatchSides_Met(sides, &hit, ray->direction);
 }
 
-// Share of the way from a corner of a triangle to its centroid.
+// A point near a corner is this fraction of the way from the corner to the triangle's centroid.
 static const float NEAR_CORNER = 0.125f;
 
 vplVec3 vplNearCorner(const vplVec3 corners[3], int k)
