@@ -47,7 +47,7 @@ static bool arePatchesMade(const vplPlan* p)
 
 // A triangle is small if its area is below 1/SMALL of the mean patch's. Small triangles share patches if there are more than MANY_SMALL
 // of them, so that form factors of all pairs would not fit into memory, and more than one for SMALL_SHARE patches. A furnished flat with
-// 100,000 patches took over half an hour of a processor and 4 GB without groups, and takes 64 s and 0.7 GB with them.
+// 100,000 patches took over half an hour of a processor and 4 GB without groups, and takes 76 s and 0.7 GB with them.
 enum { SMALL = 16, MANY_SMALL = VPL_ALL_PAIRS / 2, SMALL_SHARE = 8 };
 
 // Returns the number of small triangles if they share patches, otherwise 0.
