@@ -273,6 +273,71 @@ TEST_ALONE(WholeSidesAreThoseOfWholeTriangles)
     closeCase(&c);
 }
 
+// ---- faint sides
+
+// A lit room, triangles 0 to 15, in an empty hall, 16 to 27. A hole of 10 x 10 cm in the room's ceiling lights the hall a little.
+static void addRoomInHall(Shape* shape)
+{
+    const float x[2] = {1, 5}, y[2] = {1, 3}, z[2] = {1, 5}, hx[2] = {2.95f, 3.05f}, hz[2] = {2.95f, 3.05f};
+    const vplVec3 p[8] = {{x[0], y[0], z[0]}, {x[1], y[0], z[0]}, {x[1], y[0], z[1]}, {x[0], y[0], z[1]},
+                          {x[0], y[1], z[0]}, {x[1], y[1], z[0]}, {x[1], y[1], z[1]}, {x[0], y[1], z[1]}};
+    addFlat(shape, p[3], p[2], p[1], p[0]);
+    for (int k = 0; k < 4; k++) {
+        addFlat(shape, p[k], p[(k + 1) % 4], p[4 + (k + 1) % 4], p[4 + k]);
+    }
+    const vplVec3 h[4] = {
+        {hx[0], y[1], hz[0]}, {hx[1], y[1], hz[0]}, {hx[1], y[1], hz[1]}, {hx[0], y[1], hz[1]}};
+    for (int k = 0; k < 4; k++) {
+        addFlat(shape, p[4 + k], p[4 + (k + 1) % 4], h[(k + 1) % 4], h[k]);
+    }
+    addBox(shape, vplVec(0, 0, 0), vplVec(6, 4, 6), true);
+}
+
+static vplPatchSides* sidesSeenFrom(const vplPatches* p, const vplVec3* viewpoints, int count,
+                                    bool leaveFaint)
+{
+    vplPatchSidesDef def = vplDefaultPatchSidesDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplPatchSides* s;
+    emitter.position = vplVec(2, 2.5f, 2);
+    def.emitters = &emitter;
+    def.emitterCount = 1;
+    def.viewpoints = viewpoints;
+    def.viewpointCount = count;
+    def.leaveFaint = leaveFaint;
+    assert_int_equal(vplPatchSides_Create(p, &def, &s), VPL_SUCCESS);
+    return s;
+}
+
+// From the room, the hall's sides are left out, except the few that a particle hit; all of the room stays. The hall stays if a camera
+// in it sees how dim it is, without a camera, and by default.
+TEST_ALONE(FaintSidesThatNobodySeesAreLeftOut)
+{
+    const vplVec3 eyes[2] = {{4, 2, 4}, {0.5f, 2, 0.5f}}; // in the room and in the hall
+    Shape shape = {0};
+    addRoomInHall(&shape);
+    Case c = openCase(&shape, 0.4f, &(vplVec3){2, 2.5f, 2});
+    vplPatchSides* all = sidesSeenFrom(c.patches, eyes, 1, false);
+    vplPatchSides* left = sidesSeenFrom(c.patches, eyes, 1, true);
+    int patches;
+    const int inHall = countSides(all, 16, 12, false, &patches),
+              inRoom = countSides(all, 0, 16, false, &patches);
+    assert_true(inHall > 1000);
+    assert_int_equal(all->faintCount, 0);
+    assert_int_equal(left->count + left->faintCount, all->count);
+    assert_true(countSides(left, 16, 12, false, &patches) < inHall / 10);
+    assert_int_equal(countSides(left, 0, 16, false, &patches), inRoom);
+    vplPatchSides_Destroy(left);
+    for (int i = 0; i < 3; i++) { // from both, from the hall, from nowhere
+        left = sidesSeenFrom(c.patches, eyes + (i == 1), i == 0 ? 2 : i == 1 ? 1 : 0, true);
+        assert_int_equal(left->faintCount, 0);
+        assert_true(countSides(left, 16, 12, false, &patches) >= inHall);
+        vplPatchSides_Destroy(left);
+    }
+    vplPatchSides_Destroy(all);
+    closeCase(&c);
+}
+
 static uint64_t hashOfModel(vplContext* context)
 {
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);

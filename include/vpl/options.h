@@ -161,6 +161,14 @@ typedef enum vplPatchGroups {
     VPL_PATCH_GROUPS_ON
 } vplPatchGroups;
 
+// Sides of patches that hardly any light reaches and that the camera does not see.
+typedef enum vplFaintSides {
+    VPL_FAINT_SIDES_AUTO =
+        0, // left out, except with patchSize or VPL_FORM_FACTORS_INCENTRE, as in the document, and by vplBake
+    VPL_FAINT_SIDES_LEAVE, // left out where they are many and nothing that the camera sees is dim (vplPatchSidesDef.leaveFaint)
+    VPL_FAINT_SIDES_KEEP
+} vplFaintSides;
+
 // Interpolation of radiosity over a patch.
 typedef enum vplInterpolation {
     VPL_INTERPOLATION_GOURAUD = 0, // linear between the patches' corners

@@ -109,6 +109,7 @@ struct vplPlan {
     int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
     int patches, litPatches, patchSides; // litPatches: those that light reaches
     int patchGroups, groupedTriangles;   // patches that are groups of triangles, and the triangles in them
+    int faintSides;                      // sides of patches that are left out (vplPatchSidesDef.leaveFaint)
     double longestEdge;                  // longest edge of a patch, metres
     bool linked;                         // patches exchange light by links between groups
     int64_t formFactorBytes;             // form factors of all pairs

@@ -42,6 +42,10 @@ typedef struct vplPatchSidesDef {
     // Keep all cells and patches of a triangle's side where light reaches any of it, also those under boxes,
     // as Hemgren does. Default false.
     bool wholeTriangles;
+    // Leave out sides that the viewpoints do not see and that have less than 1/64 of the light of what they see, as in voids behind
+    // walls. Nothing is left out where fewer than one in eight sides is so faint, or where more than 1/50 of the area
+    // that the viewpoints see has less than 1/16 of the mean. Default false: all viewpoints have their light.
+    bool leaveFaint;
     uint64_t seed; // default 0
     vplProgressFcn* progress;
     void* progressUser;
@@ -64,6 +68,7 @@ typedef struct vplPatchSides {
     // a code for its front, in the low four bits, and one for its back, in the high four. 0: light reaches the whole side. 1: light
     // reaches no part of it. 2 + k: light reaches the part from which corner k is visible.
     const uint8_t* dark;
+    int faintCount; // sides left out by vplPatchSidesDef.leaveFaint
 } vplPatchSides;
 
 // Finds the sides that light reaches: by particles from all light sources, by rays from the viewpoints, and

@@ -87,6 +87,11 @@ static inline bool vplIsFiniteVec(vplVec3 a)
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
 }
 
+static inline vplRgb vplRgbAdd(vplRgb a, vplRgb b)
+{
+    return (vplRgb){a.r + b.r, a.g + b.g, a.b + b.b};
+}
+
 static inline vplRgb vplRgbScale(float s, vplRgb a)
 {
     return (vplRgb){s * a.r, s * a.g, s * a.b};

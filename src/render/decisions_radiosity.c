@@ -12,7 +12,7 @@
 #include <limits.h>
 #include <stdio.h>
 
-// Decides whether patches end where surfaces meet, before patches are made.
+// Decides whether patches end where surfaces meet, and whether faint sides are left out, before patches are made.
 static void chooseCuts(vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
@@ -21,6 +21,9 @@ static void chooseCuts(vplPlan* p)
         o->cuts = documented ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_ON;
         vplDecide(p, "patch-cuts",
                   documented ? "as the document has it" : "no patch lies on both sides of a surface");
+    }
+    if (o->faintSides == VPL_FAINT_SIDES_AUTO) {
+        o->faintSides = documented ? VPL_FAINT_SIDES_KEEP : VPL_FAINT_SIDES_LEAVE;
     }
 }
 
@@ -37,6 +40,7 @@ static vplResult countPatches(vplRunner* r, vplPlan* p)
     p->patchGroups = patches->groupCount;
     p->groupedTriangles = vplPatches_CountGrouped(patches);
     p->patchSides = sides->count;
+    p->faintSides = sides->faintCount;
     return VPL_SUCCESS;
 }
 
@@ -105,6 +109,10 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
     p->patchSides = o->patches; // in rooms, which light fills from one side
     if (arePatchesMade(p)) {
         TRY(countPatches(r, p));
+    }
+    if (p->faintSides > 0) {
+        vplDecide(p, "faint-sides", "%d of %d sides have hardly any light, and the camera sees none of them",
+                  p->faintSides, p->faintSides + p->patchSides);
     }
     p->linked = p->patchSides > p->linkAbove;
     p->formFactorBytes = (int64_t)vplEstimateFactors(r, p).held;

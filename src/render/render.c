@@ -200,8 +200,10 @@ vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float 
 {
     REQUIRE(vplScene_GetContext(scene), scene, options, path);
     const float scale = (float)(vplPow(2, (double)exposure) / VPL_PI); // radiance, as pictures have it
+    vplRenderOptions all = *options;
     vplRenderer* r;
-    TRY(openForStages(scene, options, VPL_METHOD_RADIOSITY, &r));
+    all.radiosity.faintSides = VPL_FAINT_SIDES_KEEP; // a mesh is for all cameras
+    TRY(openForStages(scene, &all, VPL_METHOD_RADIOSITY, &r));
     vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_SOLUTION);
     if (result == VPL_SUCCESS) {
         vplArena* scratch = vplArena_Create(r->runner.run.context);

@@ -319,10 +319,10 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsVirtualLights, vplMakeVirtualLights, NULL, .report = vplReportVirtualLights},
     [VPL_STAGE_PATCHES] = {
         "patches", 0.05, IN(GEOMETRY),
-        "patch-size patches subdivisions patch-placement patch-cuts patch-groups form-factors camera seed ADAPTIVE",
+        "patch-size patches subdivisions patch-placement patch-cuts patch-groups faint-sides form-factors camera seed ADAPTIVE",
         needsPatches, vplMakePatches, vplDestroyPatches, .report = vplReportPatches},
     [VPL_STAGE_SIDES] = {
-        "reachable sides", 0.1, IN(GEOMETRY) | IN(PATCHES), "form-factors camera seed",
+        "reachable sides", 0.1, IN(GEOMETRY) | IN(PATCHES), "form-factors faint-sides camera seed",
         needsSides, vplMakeSides, vplDestroySides, .report = vplReportSides},
     [VPL_STAGE_PATCH_MESH] = {
         "patch mesh", 0.11, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "",

@@ -37,6 +37,20 @@ equals InfoForetellsGroups "$(field "$s" patch_groups) of the patches are groups
     "$(sed -n 's/^ *groups *//p' "$scratch/i")"
 "$vpl" render "$rooms" $tiny --patches 300 --gather 0 --patch-groups off -o "$out/a.pfm" --stats "$s"
 equals NoGroupsAreNotNamed "" "$(grep -E 'patch_groups|grouped_triangles' "$s")"
+# An empty hall around a lit room, which a hole of 10 x 10 cm lights: the picture of the room does not need it, a mesh does.
+hall="$PWD/tests/data/hall.json"
+wide="--method radiosity --patches 2000 --size 32x18"
+"$vpl" render "$hall" $wide --faint-sides keep -o "$out/b.pfm" --stats "$s"
+kept=$(field "$s" patch_sides)
+succeeds FaintSidesAreLeftOut "$vpl" render "$hall" $wide -o "$out/a.pfm" --stats "$s"
+check FaintSidesAreMany test $((4 * $(field "$s" patch_sides))) -lt $((3 * kept))
+"$vpl" compare "$out/a.pfm" "$out/b.pfm" >"$scratch/i"
+check FaintSidesMakeNoDifference awk '/^relative_rmse/ { exit !($2 < 0.005) }' "$scratch/i"
+"$vpl" info "$hall" --method radiosity --patches 2000 >"$scratch/i"
+check FaintSidesAreInThePlan grep -q "^ *--faint-sides leave .* of $kept sides" "$scratch/i"
+"$vpl" bake "$hall" --patches 2000 -o "$out/a.ply" --stats "$s"
+equals MeshesKeepFaintSides "$kept" "$(field "$s" patch_sides)"
+rm -f "$out/a.ply"
 for show in picture indirect direct depth patches patch-radiosity form-factor-sums residual; do
     succeeds "RadiosityShows_$show" "$vpl" render "$room" $tiny --patches 50 --show $show -o "$out/a.png"
 done

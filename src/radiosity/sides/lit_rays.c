@@ -144,15 +144,34 @@ bool vplLitSample_Offset(const vplLitSearch* s, vplLitSample* sample, int64_t* r
     return vplLitSearch_Offset(s, sample->side, sample->triangle, at, rays, &sample->point);
 }
 
-// Tests whether random ray `ray` hits a lit side, and whether the hit sees that side's lit point; otherwise
-// floor under a box inherits light from the floor beside it.
-static bool seesLitSide(const vplLitSearch* s, vplLitSample* sample, int ray, int64_t* rays, vplVec3* from)
+int vplLitSample_SeesViewpoint(const vplLitSearch* s, const vplLitSample* sample, int64_t* rays)
+{
+    for (int k = 0; k < s->def->viewpointCount; k++) {
+        const vplVec3 viewpoint = s->def->viewpoints[k],
+                      n = vplLitSearch_Normal(s, sample->side, sample->triangle);
+        if (vplDot(vplSub(viewpoint, sample->point), n) > 0 &&
+            vplLitSearch_IsVisible(s, sample->point, viewpoint, rays)) {
+            return k;
+        }
+    }
+    return -1;
+}
+
+bool vplLitSample_Trace(const vplLitSearch* s, const vplLitSample* sample, int ray, int64_t* rays,
+                        vplLitHit* hitOut)
 {
     const vplRandom4 r = randomOf(s, sample, FIRST_RAY + ray);
     const vplVec3 direction = vplSampleCosineAround(vplLitSearch_Normal(s, sample->side, sample->triangle),
                                                     vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]));
+    return vplLitSearch_Trace(s, sample->point, direction, rays, hitOut);
+}
+
+// Tests whether random ray `ray` hits a lit side, and whether the hit sees that side's lit point; otherwise
+// floor under a box inherits light from the floor beside it.
+static bool seesLitSide(const vplLitSearch* s, vplLitSample* sample, int ray, int64_t* rays, vplVec3* from)
+{
     vplLitHit hit;
-    if (!vplLitSearch_Trace(s, sample->point, direction, rays, &hit)) {
+    if (!vplLitSample_Trace(s, sample, ray, rays, &hit)) {
         return false;
     }
     *from = hit.point;

@@ -39,7 +39,12 @@ typedef struct vplLitSearch {
     uint8_t* dark;     // vplPatchSides.dark
     vplBox* darkBoxes; // of dark rooms, where triangles are in groups
     int darkBoxCount;
+    uint8_t* isSeen;   // per side: 1 if a viewpoint sees it; NULL until vplLitSearch_LeaveFaint
+    float* level;      // per side that is seen or may be faint: the light that its rays meet
+    float seenDensity; // hits of particles per square metre of what viewpoints see
+    int faintCount;    // sides that are left out because they are faint
     int64_t rays;
+    vplArena* scratch;
     vplContext* context;
 } vplLitSearch;
 
@@ -50,13 +55,16 @@ enum { VPL_LIT_TASK_PATCHES = 32, VPL_LIT_PARTICLE_TASKS = 32, VPL_DARK_BOXES = 
 // which of them a ray hits, so the triangle with the lowest index stands for all.
 #define VPL_COPLANAR 0x1p-6f
 
-// ---- the three steps (lit_particles.c, lit_sides.c, lit_cells.c)
+// ---- the steps (lit_particles.c, lit_sides.c, faint_sides.c, lit_cells.c)
 
 // Marks the sides that particles from all light sources hit.
 vplResult vplLitSearch_ShootParticles(vplLitSearch* search);
 
 // Finds lit sides among those that no particle hit.
 vplResult vplLitSearch_FindSides(vplLitSearch* search);
+
+// Closes sides that hardly any light reaches and no viewpoint sees, where they are many and nothing that is seen is dim.
+vplResult vplLitSearch_LeaveFaint(vplLitSearch* search);
 
 // Finds the open cells of all lit sides, and the dark triangles of their groups.
 vplResult vplLitSearch_FindCells(vplLitSearch* search);
@@ -131,6 +139,13 @@ bool vplLitSample_SeesFound(const vplLitSearch* search, const vplLitSample* samp
 
 // Fills sample->point. False as in vplLitSearch_Offset.
 bool vplLitSample_Offset(const vplLitSearch* search, vplLitSample* sample, int64_t* rays);
+
+// The first viewpoint that is visible from the sample; -1: none.
+int vplLitSample_SeesViewpoint(const vplLitSearch* search, const vplLitSample* sample, int64_t* rays);
+
+// Traces random ray `ray` from the sample, distributed by the cosine. False if it hits nothing.
+bool vplLitSample_Trace(const vplLitSearch* search, const vplLitSample* sample, int ray, int64_t* rays,
+                        vplLitHit* hitOut);
 
 // Tests whether light reaches the sample, from one random point of one light source or along one of `gathers`
 // rays from other sides. *fromOut: the point that sends the light.

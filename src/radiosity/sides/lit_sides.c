@@ -41,13 +41,9 @@ static void testViewpoints(const vplLitSearch* s, int side, int64_t* rays)
         if (!vplLitSample_Offset(s, &sample, rays)) {
             continue;
         }
-        for (int k = 0; k < s->def->viewpointCount && s->nextOpen[side] == 0; k++) {
-            const vplVec3 viewpoint = s->def->viewpoints[k],
-                          n = vplLitSearch_Normal(s, side, sample.triangle);
-            if (vplDot(vplSub(viewpoint, sample.point), n) > 0 &&
-                vplLitSearch_IsVisible(s, sample.point, viewpoint, rays)) {
-                markLit(s, &sample, viewpoint);
-            }
+        const int k = s->nextOpen[side] == 0 ? vplLitSample_SeesViewpoint(s, &sample, rays) : -1;
+        if (k >= 0) {
+            markLit(s, &sample, s->def->viewpoints[k]);
         }
     }
 }

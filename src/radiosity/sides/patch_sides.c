@@ -114,6 +114,9 @@ static vplResult search(vplLitSearch* s, vplArena* arena)
     if (hasSources || s->def->viewpointCount > 0) {
         TRY(vplLitSearch_FindSides(s));
     }
+    if (s->def->leaveFaint) {
+        TRY(vplLitSearch_LeaveFaint(s));
+    }
     if (s->darkBoxCount > 0) {
         s->dark = vplArena_AllocZero(arena, (size_t)s->geometry->triangleCount, 1);
         TRY(vplArena_Check(arena));
@@ -222,6 +225,7 @@ static vplResult listSides(const vplLitSearch* s, vplPatchSides* sides)
     sides->ofPatch = ofPatch;
     sides->hits = hits;
     sides->dark = s->dark;
+    sides->faintCount = s->faintCount;
     sides->rays = s->rays;
     return VPL_SUCCESS;
 }
@@ -234,6 +238,7 @@ static vplResult findSides(const vplPatchSidesDef* def, vplArena* scratch, vplPa
                       .geometry = patches->geometry,
                       .def = def,
                       .darkBoxes = darkBoxes,
+                      .scratch = scratch,
                       .context = sides->context};
     TRY(reserve(scratch, &s));
     vplEmission* emission = NULL;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The light that rays of the final gather meet: reflected radiosity of patches. Emission is direct light.
 //
-// Light of other patches is interpolated between corners, light of emitters is that of the patch's cell. With
+// Light of other patches is interpolated between corners, light of emitters is that of the patch's cell. In a group of triangles
+// the cells are those that a triangle has a share of, and light of other patches is the group's mean. With
 // one value per patch rays meet light that is not there: relmse 0.0042 in the room with 250 patches and 64
 // rays, 0.0033 where all light is interpolated, 0.0020 with cells, 0.0010 where near hits are lit for
 // themselves.
 #include "geometry/paint.h"
 #include "geometry/triangle.h"
+#include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/mesh/patch_mesh.h"
+#include "radiosity/sides/side.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
@@ -24,7 +27,9 @@ typedef struct KnownLight {
     const vplRgb* reflected;        // radiosity of sides
     const vplRgb* vertexIrradiance; // without light of emitters; NULL: light is constant over a side
     const vplRgb* cells;            // irradiance by emitters: [side][cell]
+    const vplRgb* irradiance;       // of sides, from other patches
     int* first;                     // of each patch's triangles in the mesh
+    uint8_t (*cellsOf)[2]; // per triangle of a group: the first and the last cell that it has a share of
 } KnownLight;
 
 // The part of a triangle that contains a point; turns its barycentrics into those of the part.
@@ -49,8 +54,24 @@ static vplRgb irradianceAt(const KnownLight* light, int side, const vplPatchPoin
 {
     const vplRgb e = vplPatchMesh_ValueAt(light->mesh, light->first, at, light->vertexIrradiance);
     const int cell = cellAt(&light->mesh->sides->sides[side], at->position);
-    const vplRgb d = light->cells[(size_t)side * VPL_PATCH_CELLS + (size_t)cell];
-    return (vplRgb){e.r + d.r, e.g + d.g, e.b + d.b};
+    return vplRgbAdd(e, light->cells[(size_t)side * VPL_PATCH_CELLS + (size_t)cell]);
+}
+
+// The mean over the open cells that a triangle of a group has a share of.
+static vplRgb irradianceOfGroup(const KnownLight* light, int side, int triangle)
+{
+    const uint8_t* cells = light->cellsOf[triangle];
+    const unsigned open = light->mesh->sides->sides[side].open;
+    vplRgb e = {0, 0, 0};
+    int count = 0;
+    for (int k = cells[0]; k <= cells[1]; k++) {
+        if (open >> k & 1) {
+            e = vplRgbAdd(e, light->cells[(size_t)side * VPL_PATCH_CELLS + (size_t)k]);
+            count++;
+        }
+    }
+    return count > 0 ? vplRgbAdd(vplRgbScale(1 / (float)count, e), light->irradiance[side])
+                     : (vplRgb){0, 0, 0}; // light reaches no part of the triangle
 }
 
 static vplMetLight meetPatch(const void* user, const vplHit* hit, vplVec3 direction)
@@ -64,14 +85,35 @@ static vplMetLight meetPatch(const void* user, const vplHit* hit, vplVec3 direct
     }
     const vplPatchSide* met = &sides->sides[side];
     const float size = NEAR_SHARE * sqrtf(2 * met->area);
-    if (light->vertexIrradiance == NULL || vplPatches_IsGroup(sides->patches, met->patch)) {
+    if (light->cells != NULL && vplPatches_IsGroup(sides->patches, met->patch)) {
+        const vplRgb rho = vplReflectanceOfTriangle(g, hit->triangle);
+        return (vplMetLight){vplRgbMul(rho, irradianceOfGroup(light, side, hit->triangle)), size};
+    }
+    if (light->vertexIrradiance == NULL) {
         return (vplMetLight){light->reflected[side], size};
     }
     const vplPatchPoint at = {met->patch, met->back, hit->position};
     const vplRgb e = irradianceAt(light, side, &at);
     const vplFootprint footprint = vplFootprintOfBounce(direction, hit->t);
     const vplRgb rho = vplGeometry_Reflectance(g, hit->triangle, hit->position, &footprint);
-    return (vplMetLight){{rho.r * e.r, rho.g * e.g, rho.b * e.b}, size};
+    return (vplMetLight){vplRgbMul(rho, e), size};
+}
+
+// Finds the cells that the triangles of groups have a share of.
+static void findCells(const vplPatches* p, uint8_t (*cellsOf)[2])
+{
+    for (int i = 0; i < p->groupCount; i++) {
+        const int first = p->firstMember[i], end = p->firstMember[i + 1];
+        const double perCell = p->areaUpTo[end - 1] / VPL_PATCH_CELLS;
+        double before = 0;
+        for (int m = first; m < end; m++) {
+            const int low = (int)(before / perCell), high = (int)ceil(p->areaUpTo[m] / perCell) - 1;
+            uint8_t* cells = cellsOf[p->members[m]];
+            cells[0] = (uint8_t)vplMini(low, VPL_PATCH_CELLS - 1);
+            cells[1] = (uint8_t)vplMini(vplMaxi(high, cells[0]), VPL_PATCH_CELLS - 1);
+            before = p->areaUpTo[m];
+        }
+    }
 }
 
 vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
@@ -83,10 +125,20 @@ vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
     KnownLight* light = vplArena_Alloc(run->scratch, 1, sizeof *light);
     vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)mesh->sides->count, sizeof *reflected);
     int* first = vplArena_Alloc(run->scratch, (size_t)mesh->sides->patches->patchCount + 1, sizeof *first);
+    const vplPatches* patches = mesh->sides->patches;
+    const size_t triangles = patches->groupCount > 0 ? (size_t)patches->geometry->triangleCount : 0;
+    uint8_t(*cellsOf)[2] = vplArena_AllocZero(run->scratch, triangles, sizeof *cellsOf);
     TRY(vplArena_Check(run->scratch));
+    findCells(patches, cellsOf);
     vplFindReflected(mesh->sides, solution->radiosity, reflected);
     vplPatchMesh_ListPatches(mesh, first);
-    *light = (KnownLight){mesh, reflected, run->results[VPL_STAGE_VERTEX_LIGHT], patchLight->cells, first};
+    *light = (KnownLight){.mesh = mesh,
+                          .reflected = reflected,
+                          .vertexIrradiance = run->results[VPL_STAGE_VERTEX_LIGHT],
+                          .cells = patchLight->cells,
+                          .irradiance = solution->irradiance,
+                          .first = first,
+                          .cellsOf = cellsOf};
     *defOut = vplDefaultGatherDef();
     defOut->rayCount = run->plan->options.radiosity.gather;
     defOut->seed = run->plan->options.seed;

@@ -63,6 +63,7 @@ vplResult vplMakeSides(const vplRun* run, void** resultOut)
     def.emitters = emitters;
     def.viewpoints = eyes;
     def.wholeTriangles = run->plan->options.radiosity.formFactors == VPL_FORM_FACTORS_INCENTRE;
+    def.leaveFaint = run->plan->options.radiosity.faintSides == VPL_FAINT_SIDES_LEAVE;
     def.seed = run->plan->options.seed;
     def.progress = run->progress;
     def.progressUser = run->runner;
