@@ -143,20 +143,25 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
 // They leave 0.0019 by themselves: twice what patches leave around a bunny (2 % groups).
 enum { GROUP_RAYS = 16, GROUP_SHARE = 7 };
 
-// Decides whether pixels gather their light, when the patches are known.
-static void chooseGather(vplPlan* p)
+// Decides whether pixels gather their light, when the patches are known. A pixel of a triangle that goes through the wall of a dark room
+// would have the light of its lit part.
+static void chooseGather(const vplRunner* r, vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
     if (o->gather >= 0) {
         return;
     }
-    const bool grouped = p->showsPatches && vplShowsLight(p->options.output.show) && p->patchGroups > 0 &&
-                         GROUP_SHARE * (int64_t)p->patchGroups >= p->patches;
-    o->gather = grouped ? GROUP_RAYS : 0;
-    p->gathers = grouped;
-    if (grouped) {
+    const vplPatchSides* sides = arePatchesMade(p) ? r->run.results[VPL_STAGE_SIDES] : NULL;
+    const bool light = p->showsPatches && vplShowsLight(p->options.output.show),
+               grouped = p->patchGroups > 0 && GROUP_SHARE * (int64_t)p->patchGroups >= p->patches,
+               dark = sides != NULL && sides->dark != NULL;
+    p->gathers = light && (grouped || dark);
+    o->gather = p->gathers ? GROUP_RAYS : 0;
+    if (p->gathers && grouped) {
         vplDecide(p, "gather", "%d of %d patches are groups, whose light differs more than a mean tells",
                   p->patchGroups, p->patches);
+    } else if (p->gathers) {
+        vplDecide(p, "gather", "triangles may go through the wall of a dark room");
     }
     vplDecidePipeline(p);
 }
@@ -182,7 +187,7 @@ vplResult vplDecidePatches(vplRunner* r, vplPlan* p)
     chooseCuts(p);
     TRY(chooseGroups(r, p));
     TRY(chooseLinks(r, p));
-    chooseGather(p);
+    chooseGather(r, p);
     chooseRadiosity(p);
     return VPL_SUCCESS;
 }

@@ -110,9 +110,17 @@ static unsigned findOpenCells(CellSearch* c)
     return half != 0 ? half : some;
 }
 
-// ---- triangles of groups
+// ---- triangles on both sides of a wall: those in groups, and those that are too small to be cut
 
-// Returns the code of vplPatchSides.dark for one side of a triangle of a group. Corners that are covered do not count.
+// The side that a point of a triangle belongs to.
+static int sideAt(const vplLitSearch* s, int side, int triangle, vplVec3 point)
+{
+    return vplPatches_IsGroup(s->patches, side / 2)
+               ? side
+               : 2 * vplPatches_Find(s->patches, triangle, point) + (side & 1);
+}
+
+// Returns the code of vplPatchSides.dark for one face of a triangle. Corners that are covered do not count.
 static int darknessOf(const vplLitSearch* s, int side, int triangle, int64_t* rays)
 {
     vplVec3 corners[3];
@@ -120,14 +128,18 @@ static int darknessOf(const vplLitSearch* s, int side, int triangle, int64_t* ra
     int lit = -1;
     vplPatchNode_GetCorners(s->patches, triangle, side & 1, corners);
     for (int k = 0; k < 3; k++) {
-        vplLitSample sample = {
-            .side = side, .cell = triangle % VPL_PATCH_CELLS, .index = k, .triangle = triangle};
+        const vplVec3 at = vplNearCorner(corners, k);
+        vplLitSample sample = {.side = sideAt(s, side, triangle, at),
+                               .cell = triangle % VPL_PATCH_CELLS,
+                               .index = k,
+                               .triangle = triangle};
         vplVec3 from;
-        if (!vplLitSearch_Offset(s, side, triangle, vplNearCorner(corners, k), rays, &sample.point)) {
+        if (!vplLitSearch_Offset(s, sample.side, triangle, at, rays, &sample.point)) {
             continue;
         }
-        if (vplLitSearch_IsVisible(s, sample.point, s->litPoint[side], rays) ||
-            vplLitSample_IsLit(s, &sample, GATHERS, rays, &from)) {
+        if (s->open[sample.side] != 0 &&
+            (vplLitSearch_IsVisible(s, sample.point, s->litPoint[sample.side], rays) ||
+             vplLitSample_IsLit(s, &sample, GATHERS, rays, &from))) {
             lit = k;
         } else {
             dark = true;
@@ -136,15 +148,25 @@ static int darknessOf(const vplLitSearch* s, int side, int triangle, int64_t* ra
     return !dark ? 0 : lit < 0 ? 1 : 2 + lit;
 }
 
-// Tests those triangles of a group that lie in the box of a dark room. Others have no part in it.
+// Tests a triangle if it lies in the box of a dark room. Others have no part in it.
+static void findDarkTriangle(const vplLitSearch* s, int side, int triangle, int64_t* rays)
+{
+    if (vplLitSearch_FindDarkBox(s, vplLitSearch_BoxOf(s, triangle)) < s->darkBoxCount) {
+        s->dark[triangle] |= (uint8_t)(darknessOf(s, side, triangle, rays) << 4 * (side & 1));
+    }
+}
+
+// Tests the triangles of a group; of the patches of one triangle, only the first tests it.
 static void findDarkTriangles(const vplLitSearch* s, int side, int64_t* rays)
 {
-    const vplPatchParts parts = vplPatches_GetParts(s->patches, side / 2);
-    for (int i = 0; i < parts.count; i++) {
-        const int triangle = parts.nodes[i];
-        if (vplLitSearch_FindDarkBox(s, vplLitSearch_BoxOf(s, triangle)) < s->darkBoxCount) {
-            s->dark[triangle] |= (uint8_t)(darknessOf(s, side, triangle, rays) << 4 * (side & 1));
+    const int patch = side / 2, triangle = vplPatches_TriangleOf(s->patches, patch);
+    if (vplPatches_IsGroup(s->patches, patch)) {
+        const vplPatchParts parts = vplPatches_GetParts(s->patches, patch);
+        for (int i = 0; i < parts.count && s->open[side] != 0; i++) {
+            findDarkTriangle(s, side, parts.nodes[i], rays);
         }
+    } else if (patch == 0 || vplPatches_TriangleOf(s->patches, patch - 1) != triangle) {
+        findDarkTriangle(s, side, triangle, rays);
     }
 }
 
@@ -156,7 +178,7 @@ static bool isSmall(const vplLitSearch* s, int patch)
 
 static void findCells(const vplLitSearch* s, int side, int64_t* rays)
 {
-    if (s->dark != NULL && s->open[side] != 0 && vplPatches_IsGroup(s->patches, side / 2)) {
+    if (s->dark != NULL) {
         findDarkTriangles(s, side, rays);
     }
     if (s->open[side] == 0 || isSmall(s, side / 2) || isWhole(s, side, rays)) {
