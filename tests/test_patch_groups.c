@@ -6,6 +6,8 @@
 #include "geometry/triangle.h"
 #include "math/vec.h"
 #include "radiosity/sides/side.h"
+#include "render/renderer.h"
+#include "render/stages/results.h"
 
 #include <stdlib.h>
 
@@ -415,4 +417,45 @@ TEST(GroupsHaveNoIncentre, 2)
     vplPatchSides_Destroy(s);
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
+}
+
+// ---- direct light
+
+// The power of a lamp that arrives at patches.
+static double directPower(const vplScene* scene, const vplRenderOptions* o)
+{
+    vplRenderer* r;
+    double power = 0;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PATCH_LIGHT), VPL_SUCCESS);
+    const vplPatchSides* sides = r->runner.run.results[VPL_STAGE_SIDES];
+    const vplPatchLight* light = r->runner.run.results[VPL_STAGE_PATCH_LIGHT];
+    assert_true(sides->patches->groupCount * 2 > sides->patches->patchCount);
+    for (int i = 0; i < sides->count; i++) {
+        power += (double)sides->sides[i].area * vplRgbMean(light->direct[i]);
+    }
+    vplRenderer_Destroy(r);
+    return power;
+}
+
+// A lamp stands 20 cm from a wall of a closed cube of 2 m, whose faces are meshes. About 80 groups receive 4 pi of its 1 W/sr. With one
+// set of 16 points for each of them they had 0.984 to 1.020 of it.
+TEST(TheLightOfALampIsAllOnGroups, 2)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    Shape box = gridBox(15);
+    double sum = 0;
+    addShape(scene, &box, false, NULL);
+    freeShape(&box);
+    aim(scene, vplVec(-0.8f, 0.5f, 0.5f), vplVec(0.5f, 0, 0));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.8f, 0.1f, -0.2f), vplVec(0, -1, 0), 1);
+    for (uint64_t seed = 0; seed < 16; seed++) {
+        vplRenderOptions o = radiosityOptions(100);
+        o.seed = seed;
+        const double share = directPower(scene, &o) / (4 * (double)VPL_PI);
+        assertNear(share, 1, 0.01, "power", (int)seed);
+        sum += share;
+    }
+    assertNear(sum / 16, 1, 0.004, "mean of seeds", 0);
+    vplScene_Destroy(scene);
 }
