@@ -342,3 +342,24 @@ TEST(ATruthWithMorePixelsIsSaved, 2, SLOW)
     remove(path);
     vplScene_Destroy(scene);
 }
+
+// Sides of an empty hall around the lit room that the camera is in. A caller's own camera may move there, and the documents have no cuts.
+TEST(FaintSidesAreKeptForOtherCameras, 2)
+{
+    vplScene* scene = openScene(context, "tests/data/hall.json");
+    for (int i = 0; i < 4; i++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        const vplCameraDef view = *vplScene_GetCamera(scene, 0);
+        vplPlan* plan;
+        o.method = VPL_METHOD_RADIOSITY;
+        o.radiosity.faintSides = i == 3 ? VPL_FAINT_SIDES_KEEP : VPL_FAINT_SIDES_AUTO;
+        o.radiosity.patchSize = i == 2 ? 0.4f : 0;
+        o.view = i == 1 ? &view : NULL;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->options.radiosity.faintSides,
+                         i == 0 ? VPL_FAINT_SIDES_LEAVE : VPL_FAINT_SIDES_KEEP);
+        assert_int_equal(plan->faintSides > 1000, i == 0);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}

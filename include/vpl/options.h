@@ -164,9 +164,9 @@ typedef enum vplPatchGroups {
 // Sides of patches that hardly any light reaches and that the camera does not see.
 typedef enum vplFaintSides {
     VPL_FAINT_SIDES_AUTO =
-        0, // left out, except with patchSize or VPL_FORM_FACTORS_INCENTRE, as in the document, and by vplBake
+        0, // left out, except with patchSize or VPL_FORM_FACTORS_INCENTRE, as in the document
     VPL_FAINT_SIDES_LEAVE, // left out where they are many and nothing that the camera sees is dim (vplPatchSidesDef.leaveFaint)
-    VPL_FAINT_SIDES_KEEP
+    VPL_FAINT_SIDES_KEEP // vplBake and renders with vplRenderOptions.view keep them in any case: other cameras may see them
 } vplFaintSides;
 
 // Interpolation of radiosity over a patch.

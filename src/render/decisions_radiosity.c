@@ -22,7 +22,9 @@ static void chooseCuts(vplPlan* p)
         vplDecide(p, "patch-cuts",
                   documented ? "as the document has it" : "no patch lies on both sides of a surface");
     }
-    if (o->faintSides == VPL_FAINT_SIDES_AUTO) {
+    if (p->options.view != NULL) { // sides are found once for all frames, and this camera may move to others
+        o->faintSides = VPL_FAINT_SIDES_KEEP;
+    } else if (o->faintSides == VPL_FAINT_SIDES_AUTO) {
         o->faintSides = documented ? VPL_FAINT_SIDES_KEEP : VPL_FAINT_SIDES_LEAVE;
     }
 }
