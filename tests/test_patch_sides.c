@@ -4,6 +4,18 @@
 
 #include "base/context.h"
 
+// Makes sides that one point light lights, with the def's other values.
+static vplPatchSides* sidesLitFrom(const vplPatches* p, vplVec3 position, vplPatchSidesDef def)
+{
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplPatchSides* s;
+    emitter.position = position;
+    def.emitters = &emitter;
+    def.emitterCount = 1;
+    assert_int_equal(vplPatchSides_Create(p, &def, &s), VPL_SUCCESS);
+    return s;
+}
+
 // ---- unlit sides
 
 // A crate stands on a floor: triangles 0 and 1 are the floor's, 2 to 13 the crate's. Its inside and the floor
@@ -35,14 +47,9 @@ TEST(NoSeedLightsTheBackOfAWall, 2, SLOW)
     for (uint64_t seed = 0; seed < 20; seed++) {
         vplPatches* p = openPatches(g, 2.0f - 0.07f * (float)seed, VPL_MAX_PATCH_ROUNDS);
         vplPatchSidesDef def = vplDefaultPatchSidesDef();
-        vplEmitterDef emitter = vplDefaultEmitterDef();
-        vplPatchSides* s;
         int patches;
-        emitter.position = NEAR_CEILING;
-        def.emitters = &emitter;
-        def.emitterCount = 1;
         def.seed = seed;
-        assert_int_equal(vplPatchSides_Create(p, &def, &s), VPL_SUCCESS);
+        vplPatchSides* s = sidesLitFrom(p, NEAR_CEILING, def);
         assertNone(s, 0, 30, true);
         assertAll(s, 2, 28, false);
         const int lit = countSides(s, 0, 2, false, &patches);
@@ -248,13 +255,8 @@ TEST_ALONE(WholeSidesAreThoseOfWholeTriangles)
     addBox(&shape, vplVec(-0.9f, 0, -0.7f), vplVec(0.8f, 1, 0.9f), false);
     Case c = openCase(&shape, 0.5f, &(vplVec3){1, 3, 1});
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
-    vplEmitterDef emitter = vplDefaultEmitterDef();
-    vplPatchSides* s;
-    emitter.position = vplVec(1, 3, 1);
-    def.emitters = &emitter;
-    def.emitterCount = 1;
     def.wholeTriangles = true;
-    assert_int_equal(vplPatchSides_Create(c.patches, &def, &s), VPL_SUCCESS);
+    vplPatchSides* s = sidesLitFrom(c.patches, vplVec(1, 3, 1), def);
     assert_true(s->count > c.sides->count); // includes patches under the box
     for (int i = 0; i < 2 * c.patches->patchCount; i++) {
         bool reached = false;
@@ -297,16 +299,10 @@ static vplPatchSides* sidesSeenFrom(const vplPatches* p, const vplVec3* viewpoin
                                     bool leaveFaint)
 {
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
-    vplEmitterDef emitter = vplDefaultEmitterDef();
-    vplPatchSides* s;
-    emitter.position = vplVec(2, 2.5f, 2);
-    def.emitters = &emitter;
-    def.emitterCount = 1;
     def.viewpoints = viewpoints;
     def.viewpointCount = count;
     def.leaveFaint = leaveFaint;
-    assert_int_equal(vplPatchSides_Create(p, &def, &s), VPL_SUCCESS);
-    return s;
+    return sidesLitFrom(p, vplVec(2, 2.5f, 2), def);
 }
 
 // From the room, the hall's sides are left out, except the few that a particle hit; all of the room stays. The hall stays if a camera

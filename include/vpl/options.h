@@ -152,21 +152,22 @@ typedef enum vplPatchCuts {
     VPL_PATCH_CUTS_ON
 } vplPatchCuts;
 
-// Groups of small triangles.
+// Groups of small triangles. AUTO: on where there are more triangles than patches are asked for, or where many triangles are small: more
+// than 8,192, and more than one per eight patches, have less than 1/16 of the mean patch's area; off with patchSize or
+// VPL_FORM_FACTORS_INCENTRE.
 typedef enum vplPatchGroups {
-    VPL_PATCH_GROUPS_AUTO =
-        0, // on where there are more triangles than patches are asked for, or where many triangles are small: more than 8,192, and more
-    // than one for eight patches, have less than 1/16 of the mean patch's area; off with patchSize or VPL_FORM_FACTORS_INCENTRE
+    VPL_PATCH_GROUPS_AUTO = 0,
     VPL_PATCH_GROUPS_OFF, // each triangle is at least one patch
     VPL_PATCH_GROUPS_ON
 } vplPatchGroups;
 
-// Sides of patches that hardly any light reaches and that the camera does not see.
+// Sides of patches that hardly any light reaches and that the camera does not see. AUTO: LEAVE, but KEEP with patchSize or
+// VPL_FORM_FACTORS_INCENTRE, as in the document. vplBake and renders with vplRenderOptions.view keep them in any case, because other
+// cameras may see them.
 typedef enum vplFaintSides {
-    VPL_FAINT_SIDES_AUTO =
-        0, // left out, except with patchSize or VPL_FORM_FACTORS_INCENTRE, as in the document
+    VPL_FAINT_SIDES_AUTO = 0,
     VPL_FAINT_SIDES_LEAVE, // left out where they are many and nothing that the camera sees is dim (vplPatchSidesDef.leaveFaint)
-    VPL_FAINT_SIDES_KEEP // vplBake and renders with vplRenderOptions.view keep them in any case: other cameras may see them
+    VPL_FAINT_SIDES_KEEP
 } vplFaintSides;
 
 // Interpolation of radiosity over a patch.

@@ -42,8 +42,8 @@ typedef struct vplPatchSidesDef {
     // Keep all cells and patches of a triangle's side where light reaches any of it, also those under boxes,
     // as Hemgren does. Default false.
     bool wholeTriangles;
-    // Leave out sides that the viewpoints do not see and that have less than 1/64 of the light of what they see, as in voids behind
-    // walls. Nothing is left out where fewer than one in eight sides is so faint, or where more than 1/50 of the area
+    // Leave out sides that the viewpoints do not see and that receive less than 1/64 of the mean light of the sides that the viewpoints
+    // see, as in voids behind walls. Nothing is left out where fewer than one in eight sides is so faint, or where more than 1/50 of the area
     // that the viewpoints see has less than 1/16 of the mean. Default false: all viewpoints have their light.
     bool leaveFaint;
     uint64_t seed; // default 0

@@ -273,7 +273,7 @@ static vplWork workOf(const Scale* s, vplStageId id)
                                                             s->depth * (p->patchGroups > 0 ? 3 : 1);
         break;
     case VPL_STAGE_PATCH_LIGHT:
-        w.counts[SHADOW_RAY] = (p->patchGroups > 0 ? 3 : 1) * s->sides * o->radiosity.lightSamples *
+        w.counts[SHADOW_RAY] = vplPlan_PointSets(p) * s->sides * o->radiosity.lightSamples *
                                (fmax(s->emitters, s->lamps) + (p->hasSky ? 0.5 * o->lights.skySamples : 0)) *
                                s->depth;
         break;

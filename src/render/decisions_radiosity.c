@@ -12,20 +12,32 @@
 #include <limits.h>
 #include <stdio.h>
 
-// Decides whether patches end where surfaces meet, and whether faint sides are left out, before patches are made.
+// Tests for options of the document, which knows neither cuts nor groups, and keeps all sides.
+static bool isDocumented(const vplRadiosityOptions* o)
+{
+    return o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
+}
+
+// Decides whether patches end where surfaces meet, before patches are made.
 static void chooseCuts(vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
-    const bool documented = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
+    const bool documented = isDocumented(o);
     if (o->cuts == VPL_PATCH_CUTS_AUTO) {
         o->cuts = documented ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_ON;
         vplDecide(p, "patch-cuts",
                   documented ? "as the document has it" : "no patch lies on both sides of a surface");
     }
+}
+
+// Decides whether faint sides are left out, before sides are found.
+static void chooseFaintSides(vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
     if (p->options.view != NULL) { // sides are found once for all frames, and this camera may move to others
         o->faintSides = VPL_FAINT_SIDES_KEEP;
     } else if (o->faintSides == VPL_FAINT_SIDES_AUTO) {
-        o->faintSides = documented ? VPL_FAINT_SIDES_KEEP : VPL_FAINT_SIDES_LEAVE;
+        o->faintSides = isDocumented(o) ? VPL_FAINT_SIDES_KEEP : VPL_FAINT_SIDES_LEAVE;
     }
 }
 
@@ -52,7 +64,7 @@ static bool arePatchesMade(const vplPlan* p)
 }
 
 // A triangle is small if its area is below 1/SMALL of the mean patch's. Small triangles share patches if there are more than MANY_SMALL
-// of them, so that form factors of all pairs would not fit into memory, and more than one for SMALL_SHARE patches. A furnished flat with
+// of them, so that form factors of all pairs would not fit into memory, and more than one per SMALL_SHARE patches. A furnished flat with
 // 100,000 patches took over half an hour of a processor and 4 GB without groups, and takes 76 s and 0.7 GB with them.
 enum { SMALL = 16, MANY_SMALL = VPL_ALL_PAIRS / 2, SMALL_SHARE = 8 };
 
@@ -78,7 +90,7 @@ static vplResult chooseGroups(vplRunner* r, vplPlan* p)
         return VPL_SUCCESS;
     }
     o->groups = VPL_PATCH_GROUPS_OFF;
-    if (o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0) {
+    if (isDocumented(o)) {
         vplDecide(p, "patch-groups", "other options ask for a patch per triangle");
         return VPL_SUCCESS;
     }
@@ -147,6 +159,7 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
 // 0.0093 to 0.0059 in the flat, in 1.13 times the time; 256 bring 0.012, 0.048 and 0.0052 in 1.4 times.
 enum { GROUP_RAYS = 16, MOST_GROUP_RAYS = 64, GROUP_RAYS_PER_SIDE = 300, GROUP_SHARE = 7 };
 
+// Returns the number of rays for the size of the picture.
 static int groupRays(const vplPlan* p)
 {
     const double pixels = (double)p->options.output.width * p->options.output.height,
@@ -200,6 +213,7 @@ static void chooseRadiosity(vplPlan* p)
 vplResult vplDecidePatches(vplRunner* r, vplPlan* p)
 {
     chooseCuts(p);
+    chooseFaintSides(p);
     TRY(chooseGroups(r, p));
     TRY(chooseLinks(r, p));
     chooseGather(r, p);

@@ -120,9 +120,8 @@ static Bytes patchLight(const Scale* s, double sides)
 {
     const double chunk = sides < 4096 ? sides : 4096;
     const double cells = s->plan->gathers ? 12.0 * VPL_PATCH_CELLS : 0;
-    const double sets = s->plan->patchGroups > 0 ? 3 : 1; // of points
-    return (Bytes){(28 + cells) * sides,
-                   8 * sets * sides + 40 * chunk * s->plan->options.radiosity.lightSamples};
+    return (Bytes){(28 + cells) * sides, 8 * vplPlan_PointSets(s->plan) * sides +
+                                             40 * chunk * s->plan->options.radiosity.lightSamples};
 }
 
 // The last draft of adaptive patches has two thirds of the final sides.

@@ -29,6 +29,12 @@ static inline double vplPlan_DrawnPatches(const vplPlan* plan)
     return (double)plan->patches - plan->patchGroups + plan->groupedTriangles;
 }
 
+// Sets of points that find the direct light of a side, on average: one, and about two more where patches are groups (patch_light.c).
+static inline double vplPlan_PointSets(const vplPlan* plan)
+{
+    return plan->patchGroups > 0 ? 3 : 1;
+}
+
 // The most that shadow maps of all emitters may take together, and reflective maps that choose their own size: rays cast the
 // shadows of more, and reflective maps are smaller. Maps of 44 points of 1024^2 texels, after which rays take about as long.
 #define VPL_MAX_EMITTER_MAP_BYTES 1073741824.0

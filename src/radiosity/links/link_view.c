@@ -68,7 +68,7 @@ void vplCastPairRays(const vplJudgedPair* pair, const vplLinkTerms* terms, int f
     vplCastLinkRays(pair->work, &sight, seen, &pair->answer->rays);
 }
 
-// The `lit` of the group that fewer particles hit.
+// The lower `lit` of the two groups: that of the group which receives less light for its area.
 static double leastLit(const vplJudgedPair* pair)
 {
     return (double)fminf(pair->p->lit, pair->q->lit);

@@ -2,9 +2,9 @@
 // Sides that the picture does not need: those that hardly any light reaches and that no viewpoint sees. Models of buildings
 // have voids behind their walls, which small openings light a little, with as many sides as their rooms.
 //
-// The level of a side is the light that 64 rays from it meet, relative to what sides that viewpoints see have on average.
-// A side that reflects L of this light adds at most L to the level of any other, so little is lost where all that
-// viewpoints see is brighter than that.
+// The level of a side is the light that 64 rays from it meet, over the mean light of the sides that viewpoints see. A side
+// reflects less light than it receives, so sides below a level L together add less than L to the level of any other side.
+// Little is lost where all that viewpoints see is far above L.
 #include "base/context.h"
 #include "geometry/paint.h"
 #include "geometry/triangle.h"
@@ -23,9 +23,16 @@ enum {
 // Levels of faint and dim sides, and the most that a ray meets: one particle on a small side is no spot of light.
 static const float FAINT = 1 / 64.0f, DIM = 1 / 16.0f, BRIGHTEST = 4;
 
+// Tests for a side that light reaches, but that no particle hit.
 static bool mayBeFaint(const vplLitSearch* s, int side)
 {
     return s->open[side] != 0 && s->hits[side] == 0;
+}
+
+// The same, once it is known what viewpoints see.
+static bool isFaintIfDim(const vplLitSearch* s, int side)
+{
+    return mayBeFaint(s, side) && !s->isSeen[side];
 }
 
 // Tests whether a viewpoint sees one of 16 samples of an open side.
@@ -44,8 +51,8 @@ static float densityOf(const vplLitSearch* s, int side)
     return (float)s->hits[side] / (float)vplPatches_Area(s->patches, side / 2);
 }
 
-// Finds the level of a side. The sample whose rays meet most light becomes the lit point of one that no viewpoint sees: so far it may be
-// in a void.
+// Finds the level of a side. If no viewpoint sees the side, the sample whose rays meet most light becomes its lit point, because
+// the lit point so far may be in a void.
 static void findLevel(const vplLitSearch* s, int side, int64_t* rays)
 {
     if (!mayBeFaint(s, side) && !s->isSeen[side]) {
@@ -66,7 +73,7 @@ static void findLevel(const vplLitSearch* s, int side, int64_t* rays)
             }
         }
         sum += met;
-        if (met > most && s->isSeen[side] == 0) {
+        if (met > most && !s->isSeen[side]) {
             most = met;
             s->nextLitPoint[side] = vplLitSearch_MoveTowards(s, side / 2, sample.point, from);
         }
@@ -100,7 +107,7 @@ static bool seesDimSides(const vplLitSearch* s)
 
 static bool isFaint(const vplLitSearch* s, int side)
 {
-    return mayBeFaint(s, side) && !s->isSeen[side] && s->level[side] < FAINT;
+    return isFaintIfDim(s, side) && s->level[side] < FAINT;
 }
 
 // Closes faint sides if there are enough of them.
@@ -117,7 +124,7 @@ static void closeFaint(vplLitSearch* s, int open)
     for (int side = 0; side < sides; side++) {
         if (isFaint(s, side)) {
             s->open[side] = 0;
-        } else if (mayBeFaint(s, side) && !s->isSeen[side]) {
+        } else if (isFaintIfDim(s, side)) {
             s->litPoint[side] = s->nextLitPoint[side];
         }
         s->nextOpen[side] = s->open[side];

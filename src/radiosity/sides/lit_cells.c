@@ -156,7 +156,7 @@ static void findDarkTriangle(const vplLitSearch* s, int side, int triangle, int6
     }
 }
 
-// Tests the triangles of a group; of the patches of one triangle, only the first tests it.
+// Tests the triangles of a patch. A triangle that is divided into patches is tested once, with the first of them.
 static void findDarkTriangles(const vplLitSearch* s, int side, int64_t* rays)
 {
     const int patch = side / 2, triangle = vplPatches_TriangleOf(s->patches, patch);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The light that patches exchange, and its values at vertices.
-#include "radiosity/sides/side.h"
 #include "math/vec.h"
+#include "radiosity/sides/side.h"
 #include "render/runner.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"

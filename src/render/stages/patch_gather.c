@@ -2,7 +2,7 @@
 // The light that rays of the final gather meet: reflected radiosity of patches. Emission is direct light.
 //
 // Light of other patches is interpolated between corners, light of emitters is that of the patch's cell. In a group of triangles
-// the cells are those that a triangle has a share of, and light of other patches is the group's mean. With
+// light of emitters is the mean over the cells that the triangle lies in, and light of other patches is the group's mean. With
 // one value per patch rays meet light that is not there: relmse 0.0042 in the room with 250 patches and 64
 // rays, 0.0033 where all light is interpolated, 0.0020 with cells, 0.0010 where near hits are lit for
 // themselves.
@@ -29,7 +29,8 @@ typedef struct KnownLight {
     const vplRgb* cells;            // irradiance by emitters: [side][cell]
     const vplRgb* irradiance;       // of sides, from other patches
     int* first;                     // of each patch's triangles in the mesh
-    uint8_t (*cellsOf)[2]; // per triangle of a group: the first and the last cell that it has a share of
+    uint8_t (
+        *cellsOf)[2]; // per triangle of a group: the first and the last of the group's cells that it lies in
 } KnownLight;
 
 // The part of a triangle that contains a point; turns its barycentrics into those of the part.
@@ -57,7 +58,8 @@ static vplRgb irradianceAt(const KnownLight* light, int side, const vplPatchPoin
     return vplRgbAdd(e, light->cells[(size_t)side * VPL_PATCH_CELLS + (size_t)cell]);
 }
 
-// The mean over the open cells that a triangle of a group has a share of.
+// The irradiance of a triangle of a group: the mean of emitters' light over the open cells that the triangle lies in, and the
+// group's light from other patches.
 static vplRgb irradianceOfGroup(const KnownLight* light, int side, int triangle)
 {
     const uint8_t* cells = light->cellsOf[triangle];
@@ -99,7 +101,8 @@ static vplMetLight meetPatch(const void* user, const vplHit* hit, vplVec3 direct
     return (vplMetLight){vplRgbMul(rho, e), size};
 }
 
-// Finds the cells that the triangles of groups have a share of.
+// Finds the first and the last cell that each triangle of a group lies in. The cells divide the group's area evenly, in the order of
+// its triangles.
 static void findCells(const vplPatches* p, uint8_t (*cellsOf)[2])
 {
     for (int i = 0; i < p->groupCount; i++) {

@@ -2,6 +2,7 @@
 // The direct light of patches, which emitters send.
 #include "base/rng.h"
 #include "geometry/triangle.h"
+#include "math/scalar.h"
 #include "radiosity/sides/side.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -46,10 +47,14 @@ static int placePoints(const vplRun* run, PointSet set, int samples, vplSurfaceP
     return count;
 }
 
-// Moves a mean over `before` values towards one more.
+// Makes a mean over `before` values one over these and one more.
 static void addToMean(vplRgb* mean, int before, vplRgb value)
 {
     const float n = (float)(before + 1);
+    if (before == 0) {
+        *mean = value; // exactly
+        return;
+    }
     mean->r += (value.r - mean->r) / n;
     mean->g += (value.g - mean->g) / n;
     mean->b += (value.b - mean->b) / n;
@@ -64,12 +69,7 @@ static void keepCells(const vplPatchSide* side, const vplRgb* irradiance, int co
         cells[k] = mean;
     }
     for (int i = 0; i < count && count == open; i++) {
-        vplRgb* cell = &cells[vplPatchSide_OpenCell(side, i)];
-        if (before == 0) {
-            *cell = irradiance[i];
-        } else {
-            addToMean(cell, before, irradiance[i]);
-        }
+        addToMean(&cells[vplPatchSide_OpenCell(side, i)], before, irradiance[i]);
     }
 }
 
@@ -90,7 +90,7 @@ static void sumSet(const Chunk* chunk, int i, vplRgb* meanOut, float* spreadOut)
     *spreadOut = variance > 0 ? (float)sqrt(variance) : 0;
 }
 
-// Set 0 of a side gives its light. Set 1 replaces it, and further ones join it in a mean.
+// Set 0 gives the light of a side and its spread. Where more sets follow, the light is the mean of those from set 1 on.
 static void keepSet(const vplPatchSides* sides, const Chunk* chunk, int i, PointSet set)
 {
     vplPatchLight* light = chunk->light;
@@ -98,11 +98,7 @@ static void keepSet(const vplPatchSides* sides, const Chunk* chunk, int i, Point
     vplRgb mean;
     float spread;
     sumSet(chunk, i, &mean, &spread);
-    if (before == 0) {
-        light->direct[set.side] = mean;
-    } else {
-        addToMean(&light->direct[set.side], before, mean);
-    }
+    addToMean(&light->direct[set.side], before, mean);
     light->spread[set.side] = set.number == 0 ? spread : light->spread[set.side];
     if (light->cells != NULL) {
         keepCells(&sides->sides[set.side], chunk->irradiance + first, chunk->firstPoint[i + 1] - first, mean,
@@ -131,8 +127,7 @@ static vplResult lightSets(const vplRun* run, const vplShadeDef* def, const Poin
                            Chunk* chunk)
 {
     for (int first = 0; first < count; first += chunk->room) {
-        const int left = count - first;
-        TRY(lightChunk(run, def, sets + first, left < chunk->room ? left : chunk->room, chunk));
+        TRY(lightChunk(run, def, sets + first, vplMini(count - first, chunk->room), chunk));
     }
     return VPL_SUCCESS;
 }
@@ -140,9 +135,9 @@ static vplResult lightSets(const vplRun* run, const vplShadeDef* def, const Poin
 // ---- groups
 //
 // The light of a lamp differs over a group more than over a triangle. With one set of points for each side, all of Sibenik had 0.960 to
-// 0.995 of the lamp's light (three seeds, 5,000 patches), and the picture followed. So the first set only tells where light differs, and
-// others take its place: one for each side, and as many again in proportion to area and spread, which leaves the least variance
-// (Neyman, 1934). If the first set stayed in the mean, sides whose light it missed would have too little.
+// 0.995 of the lamp's light (three seeds, 5,000 patches), and the picture followed. So the first set only tells where light differs. Each
+// side of a group then gets a new set, and as many sets as there are such sides are shared out in proportion to area times spread, which
+// leaves the least variance (Neyman, 1934). If the first set stayed in the mean, sides whose light it missed would have too little.
 
 // The number of sets that take the place of the first one on a side.
 static int countSets(const vplPatchSides* sides, const vplPatchLight* light, int side, double share)
@@ -155,7 +150,7 @@ static int countSets(const vplPatchSides* sides, const vplPatchLight* light, int
     return 1 + (int)(more < MOST_SETS - 1 ? more : MOST_SETS - 1);
 }
 
-// The sets by area and spread. 0: no side's light differs.
+// The number of sets that are shared out, over the sum of area times spread of all sides of groups. 0: no side's light differs.
 static double findShare(const vplPatchSides* sides, const vplPatchLight* light)
 {
     double spread = 0;
@@ -191,7 +186,7 @@ static vplResult lightGroups(const vplRun* run, const vplShadeDef* def, Chunk* c
 // Casts shadows by rays, because there are fewer patches than shadow maps have texels.
 static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* light)
 {
-    const int room = sideCount < CHUNK_SETS ? sideCount : CHUNK_SETS;
+    const int room = vplMini(sideCount, CHUNK_SETS);
     const size_t points = (size_t)room * (size_t)run->plan->options.radiosity.lightSamples;
     Chunk* chunk = vplArena_AllocZero(run->scratch, 1, sizeof *chunk);
     PointSet* sets = vplArena_Alloc(run->scratch, (size_t)sideCount, sizeof *sets);
