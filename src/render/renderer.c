@@ -33,7 +33,8 @@ static void forget(vplRenderer* r)
     r->weight = r->passMs = r->lastMs = 0;
     r->error = (vplErrorParts){-1, -1, -1};
     r->judgedNoise = 0;
-    r->coarserSquare = 0;
+    r->coarserSquare = r->closingMs = 0;
+    r->closingPixels = 0;
 }
 
 // A plan that may follow the one under way.
@@ -141,6 +142,7 @@ static vplResult create(const vplScene* scene, const vplRenderOptions* options, 
     r->watched = start;
     r->cpuStart = cpuStart;
     r->spreadBefore = INFINITY;
+    r->pace = 1;
     r->deadline = r->asked.stop.budgetMs > 0 ? start + r->asked.stop.budgetMs : INFINITY;
     r->runner = vplRunner_Begin(scene, history);
     r->runner.progress = isfinite(r->deadline) || options->progress != NULL ? watch : NULL;
@@ -190,19 +192,28 @@ void vplRenderer_ForgetEdges(vplRenderer* r)
     r->edgePixels = r->edgePaths = 0;
 }
 
-vplResult vplRenderer_TraceEdges(vplRenderer* r, int pixels, int paths)
+static vplResult openEdges(vplRenderer* r, int pixels, int paths)
 {
-    const double start = vplClockMs();
     vplImage* image = NULL;
     vplRenderer_ForgetEdges(r);
     vplResult result = vplRenderer_Resolve(r, &image);
     result =
         result == VPL_SUCCESS ? vplEdges_Create(&r->runner.run, image, pixels, paths, &r->edges) : result;
     vplImage_Destroy(image);
+    return result;
+}
+
+vplResult vplRenderer_TraceEdges(vplRenderer* r, int pixels, int paths)
+{
+    const double start = vplClockMs();
+    const bool goesOn = r->edges != NULL && r->edgePixels == pixels && r->edgePaths <= paths;
+    const int64_t before = goesOn ? vplEdges_Rays(r->edges) : 0;
+    const vplResult result =
+        goesOn ? vplEdges_Refine(&r->runner.run, r->edges, paths) : openEdges(r, pixels, paths);
     if (result == VPL_SUCCESS) {
         r->edgePixels = pixels;
         r->edgePaths = paths;
-        r->otherRays += vplEdges_Rays(r->edges);
+        r->otherRays += vplEdges_Rays(r->edges) - before;
     }
     vplRun_AddTime(&r->runner.run, "edges", start);
     return result;

@@ -3,6 +3,7 @@
 #ifndef VPL_RENDER_RENDERER_H
 #define VPL_RENDER_RENDERER_H
 
+#include "base/clock.h"
 #include "render/plan.h"
 #include "render/planner/edges.h"
 #include "render/planner/truth.h"
@@ -67,6 +68,9 @@ struct vplRenderer {
     double passMs;          // of all its passes
     double baseMs, lastMs;  // of its last pass: time of direct light, and the rest
     double deadline;        // ms; infinite: none
+    double pace;            // the time of the coarse picture over that foreseen for it; 1: unknown
+    int closingPixels;      // at edges, through which paths are traced in the last part of the time; 0: none
+    double closingMs;       // this part
     bool late;              // the deadline has ended a step
     double watched;         // ms, when progress was last reported
     double gap; // ms, longest time between two reports: so much later a pass may end that is cancelled
@@ -114,8 +118,8 @@ vplResult vplRenderer_DrawDirect(vplRenderer* renderer, vplImage** imageOut);
 // Makes sums of passes, all 0.
 vplResult vplRenderer_OpenSums(vplRenderer* renderer);
 
-// Traces pixels at edges of the picture of all passes so far, instead of those that are traced. If it fails or is cancelled, none
-// is traced. The next pass forgets them.
+// Traces pixels at edges of the picture of all passes so far. If as many pixels are traced already, their paths stay and further ones
+// follow, which are none if it fails or is cancelled; other pixels replace those that are traced. The next pass forgets all.
 vplResult vplRenderer_TraceEdges(vplRenderer* renderer, int pixels, int paths);
 
 void vplRenderer_ForgetEdges(vplRenderer* renderer);
@@ -155,8 +159,7 @@ vplResult vplWidenTruth(vplRenderer* renderer);
 // Forgets the truth, but not that its rays were cast. The next judgement makes another one.
 void vplForgetTruth(vplRenderer* renderer);
 
-// After the truth was asked: goes on with another plan where that promises less error in the time that is left (asked is
-// 0), or the error in less time, and ends a render that more passes do not improve.
+// After the truth was asked: goes on with another plan where that promises the error in less time, and ends a render that more passes do not improve.
 // *moreOut: the truth is better known now, or pixels at edges are traced, so that the picture is to be judged again.
 vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut, bool* moreOut);
 
@@ -174,6 +177,12 @@ vplResult vplFitPatches(vplRenderer* renderer, double share);
 
 // True if the options' count of passes or paths is reached.
 bool vplIsComplete(const vplRenderer* renderer);
+
+// Milliseconds until the deadline.
+static inline double vplTimeLeft(const vplRenderer* r)
+{
+    return r->deadline - vplClockMs();
+}
 
 // After a pass: decides whether the render is done, goes on, or goes on with another plan.
 vplResult vplReview(vplRenderer* renderer, bool* doneOut);

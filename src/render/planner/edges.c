@@ -60,7 +60,7 @@ static void choosePixels(vplEdges* e, const vplImage* picture, int bin)
 
 // ---- their paths
 
-static vplResult traceEdges(const vplRun* run, const vplImage* picture, int most, int paths, vplEdges* e)
+static vplResult openEdges(const vplRun* run, const vplImage* picture, int most, vplEdges* e)
 {
     int count;
     const int bin = chooseBin(picture, most, &count);
@@ -70,11 +70,7 @@ static vplResult traceEdges(const vplRun* run, const vplImage* picture, int most
     choosePixels(e, picture, bin);
     vplPathDef def = vplDescribePaths(run->plan, VPL_SHOW_PICTURE);
     def.seed ^= SEED;
-    TRY(vplSparsePaths_Init(&e->paths, run->results[VPL_STAGE_GEOMETRY], &def, e->pixels, count));
-    const vplResult result = vplSparsePaths_Trace(&e->paths, (paths + 1) / 2,
-                                                  (vplProgressRange){run->progress, run->runner, 0, 1});
-    vplSparsePaths_Free(&e->paths);
-    return result;
+    return vplSparsePaths_Init(&e->paths, run->results[VPL_STAGE_GEOMETRY], &def, e->pixels, count);
 }
 
 vplResult vplEdges_Create(const vplRun* run, const vplImage* picture, int most, int paths,
@@ -83,16 +79,33 @@ vplResult vplEdges_Create(const vplRun* run, const vplImage* picture, int most, 
     vplArena* arena = vplArena_Create(run->context);
     vplEdges* e = vplArena_AllocZero(arena, 1, sizeof *e);
     vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS) {
-        e->arena = arena;
-        result = traceEdges(run, picture, most, paths, e);
+    if (result != VPL_SUCCESS) {
+        vplArena_Destroy(arena);
+        return result;
     }
-    return vplArena_Deliver(arena, result, e, edgesOut);
+    e->arena = arena;
+    result = openEdges(run, picture, most, e);
+    result = result == VPL_SUCCESS ? vplEdges_Refine(run, e, paths) : result;
+    if (result != VPL_SUCCESS) {
+        vplEdges_Destroy(e);
+        return result;
+    }
+    *edgesOut = e;
+    return VPL_SUCCESS;
 }
 
-void vplEdges_Destroy(vplEdges* edges)
+vplResult vplEdges_Refine(const vplRun* run, vplEdges* e, int paths)
 {
-    vplArena_Destroy(edges != NULL ? edges->arena : NULL);
+    return vplSparsePaths_Trace(&e->paths, (paths + 1) / 2 - e->paths.done,
+                                (vplProgressRange){run->progress, run->runner, 0, 1});
+}
+
+void vplEdges_Destroy(vplEdges* e)
+{
+    if (e != NULL) {
+        vplSparsePaths_Free(&e->paths);
+        vplArena_Destroy(e->arena);
+    }
 }
 
 int64_t vplEdges_Rays(const vplEdges* edges)

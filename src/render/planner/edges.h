@@ -15,9 +15,12 @@ int vplContrastBin(const vplImage* image, int x, int y);
 typedef struct vplEdges vplEdges;
 
 // Chooses at most `most` pixels of the picture, all those of the highest bins that fit, and traces `paths` paths through each. The
-// run's geometry must outlive it.
+// run's geometry and plan must outlive it.
 vplResult vplEdges_Create(const vplRun* run, const vplImage* picture, int most, int paths,
                           vplEdges** edgesOut);
+
+// Traces further paths, until each pixel has `paths`: the same bits as with all at once. If it fails or is cancelled, none is added.
+vplResult vplEdges_Refine(const vplRun* run, vplEdges* edges, int paths);
 
 // NULL is allowed.
 void vplEdges_Destroy(vplEdges* edges);

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "render/planner/edge_steps.h"
 #include "render/planner/planner.h"
+#include "render/planner/time_plan.h"
 #include "render/renderer.h"
 #include "render/show.h"
 #include "render/stages/make.h"
@@ -25,120 +26,6 @@ void vplResolveQuality(vplRenderOptions* o)
         o->stop.budgetMs = o->stop.budgetMs > 0 ? o->stop.budgetMs : WORDS[o->stop.quality].ms;
         o->stop.quality = VPL_QUALITY_NONE;
     }
-}
-
-static double leftOf(const vplRenderer* r)
-{
-    return r->deadline - vplClockMs();
-}
-
-// ---- coarse plans
-
-// Share of the time that may pass until the first picture; times are foreseen within a factor of two.
-static const double FIRST_SHARE = 0.25;
-
-// A coarse plan takes a sample of emitters only where there are more.
-enum { FEW_EMITTERS = 16 };
-
-static int countEmitters(const vplRenderer* r)
-{
-    const int asked = r->asked.lights.emitterSamples, all = vplScene_GetEmitterCount(r->runner.run.scene);
-    return asked > 0 && asked < all ? asked : all;
-}
-
-// Fewer lights and patches by a factor, no smooth edges and small shadow maps.
-static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
-{
-    *o = r->asked;
-    const int emitters = countEmitters(r);
-    if (emitters > FEW_EMITTERS) {
-        const double fits = r->plan != NULL && !r->coarse ? FIRST_SHARE * leftOf(r) / r->plan->firstMs : 1;
-        o->lights.emitterSamples = (int)fmax(FEW_EMITTERS, ceil(fmin(share, fits) * emitters));
-    }
-    o->stop.budgetMs =
-        o->method == VPL_METHOD_RADIOSITY ? o->stop.budgetMs : 0; // which it may not be able to hold
-    o->stop.maxError = 0;
-    o->stop.passes = o->stop.growFrom = 0;
-    o->output.antialias = share < 0.2 ? 1 : o->output.antialias;
-    o->output.supersample = 1;
-    o->shadow.mapSize = o->shadow.mapSize < 256 ? o->shadow.mapSize : 256;
-    o->shadow.rsmSize = o->shadow.rsmSize > 0 && o->shadow.rsmSize < 256 ? o->shadow.rsmSize : 256;
-    o->particles.count = o->particles.count >= 0 && o->particles.count < 250 ? o->particles.count : 250;
-    if (o->method == VPL_METHOD_AUTO ||
-        o->method == VPL_METHOD_KELLER) { // light that is missing is better than none
-        o->pipeline.kind =
-            o->pipeline.kind == VPL_ACCUMULATE_USUAL ? VPL_ACCUMULATE_INTERLEAVED : o->pipeline.kind;
-        o->pipeline.interleave = o->pipeline.interleave < 0 ? 8 : o->pipeline.interleave;
-        o->lights.compensation = VPL_COMPENSATION_NONE;
-    }
-    o->ssvp.firstBounce = (int)ceil(share * o->ssvp.firstBounce);
-    o->ssvp.secondBounce = (int)ceil(share * o->ssvp.secondBounce);
-    o->ssvp.clusters = (int)ceil(share * o->ssvp.clusters);
-    o->ssvp.maxClusters = (int)ceil(share * o->ssvp.maxClusters);
-    o->radiosity.patches = (int)ceil(share * o->radiosity.patches);
-    o->radiosity.iterations = o->radiosity.iterations < 20 ? o->radiosity.iterations : 20;
-    o->radiosity.gather = 0;
-}
-
-// A plan is not begun if this share of the time foreseen for its first picture is more than the time that is left.
-static const double HOPELESS = 0.8;
-
-static bool comesTooLate(const vplRenderer* r)
-{
-    return HOPELESS * r->plan->firstMs > leftOf(r);
-}
-
-vplResult vplRenderer_PlanFirst(vplRenderer* r)
-{
-    const vplMethod method = r->asked.method;
-    const bool patches = method == VPL_METHOD_RADIOSITY; // whose plan takes long, too
-    const bool fits = isinf(r->deadline) || method == VPL_METHOD_PATH ||
-                      !vplShowsLight(r->asked.output.show) || r->asked.output.aovs != 0;
-    vplRenderOptions o;
-    if (fits || !patches) {
-        TRY(vplRenderer_Plan(r, &r->asked, false));
-    }
-    if (fits || (!patches && r->plan->firstMs < FIRST_SHARE * leftOf(r))) {
-        return VPL_SUCCESS;
-    }
-    coarsen(r, patches ? 0.02 : 0.0625, &o);
-    return vplRenderer_Plan(r, &o, true);
-}
-
-// After a coarse picture with a sample of the emitters the next has as many as 0.7 of the time is enough for. Its edges are
-// not smooth, because few bright emitters have many rims of shadows, and short rays do not compensate the clamp, because
-// all emitters are evaluated where they end: each takes several times as long.
-static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
-{
-    const double spent = vplClockMs() - r->planStart, before = r->plan->options.lights.emitterSamples;
-    const double fits = before * fmax(1, 0.7 * leftOf(r) / fmax(spent, 1));
-    if (before > 0 && fits < countEmitters(r)) {
-        o->lights.emitterSamples = (int)fits;
-        o->output.antialias = 1;
-        o->lights.compensation = VPL_COMPENSATION_NONE;
-        vplLog(r->runner.run.context, VPL_LOG_INFO, "%d of the scene's %d lights stand for all in this time",
-               (int)fits, vplScene_GetEmitterCount(r->runner.run.scene));
-    }
-}
-
-// After a coarse picture of radiosity the next has as many patches as half of the time is enough for, where the time
-// grows with the square of their number.
-static vplResult refine(vplRenderer* r)
-{
-    vplRenderOptions o = r->asked;
-    bool coarse = false;
-    if (r->plan->options.method == VPL_METHOD_RADIOSITY) {
-        const double spent = vplClockMs() - r->planStart, before = r->plan->options.radiosity.patches;
-        const double patches = before * sqrt(fmax(1, 0.4 * leftOf(r) / fmax(spent, 1)));
-        coarse = patches < 0.75 * o.radiosity.patches;
-        if (coarse) {
-            coarsen(r, patches / o.radiosity.patches, &o);
-            o.output.antialias = r->asked.output.antialias;
-        }
-    } else {
-        addEmitters(r, &o);
-    }
-    return vplRenderer_Replace(r, &o, coarse, -1);
 }
 
 // ---- paths
@@ -170,7 +57,7 @@ int vplNextPaths(const vplRenderer* r)
     }
     if (isfinite(r->deadline) && r->paths > 0) {
         const double each = r->passMs / r->paths;
-        const int fit = (int)fmin(most, (leftOf(r) + 0.02 * r->asked.stop.budgetMs) / each);
+        const int fit = (int)fmin(most, (vplTimeLeft(r) + 0.02 * r->asked.stop.budgetMs) / each);
         paths = fit < paths ? fit > 1 ? fit : 1 : paths;
     }
     return left <= 0 || paths < left ? paths : left;
@@ -313,20 +200,6 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// A render that has a time and not an error looks at its error once, when a sixth of the time is over, and takes no more
-// than a thirtieth of the time for it.
-static vplResult reviewTime(vplRenderer* r, bool* doneOut)
-{
-    const double budget = r->asked.stop.budgetMs;
-    const bool asks = r->asked.method == VPL_METHOD_AUTO && r->plan->progressive && budget >= 300;
-    bool more;
-    if (asks && r->truth == NULL && r->done >= 4 && leftOf(r) < 0.84 * budget && leftOf(r) > 0.3 * budget) {
-        TRY(vplJudge(r, 0, true, budget / 30));
-        return vplReconsider(r, 0, doneOut, &more);
-    }
-    return VPL_SUCCESS;
-}
-
 // ---- after a pass
 
 bool vplIsComplete(const vplRenderer* r)
@@ -344,7 +217,7 @@ static bool isTooLate(const vplRenderer* r)
     const double next = r->plan->options.method == VPL_METHOD_PATH
                             ? r->passMs / r->paths
                             : r->lastMs * (0.5 + 0.5 * grown); // half of the time does not grow
-    return isfinite(r->deadline) && leftOf(r) + 0.05 * r->asked.stop.budgetMs < next;
+    return isfinite(r->deadline) && vplTimeLeft(r) + 0.05 * r->asked.stop.budgetMs < next;
 }
 
 vplResult vplReview(vplRenderer* r, bool* doneOut)
@@ -352,9 +225,7 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     const double asked = r->asked.stop.maxError;
     *doneOut = false;
     if (r->coarse) {
-        TRY(refine(r));
-        *doneOut = !r->coarse && comesTooLate(r);
-        return VPL_SUCCESS;
+        return vplFollowCoarse(r, doneOut);
     }
     const bool complete = vplIsComplete(r);
     *doneOut = complete;
@@ -364,13 +235,11 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     if (asked > 0 && vplShowsLight(r->asked.output.show)) {
         TRY(reviewError(r, asked, doneOut));
     } else if (vplShowsLight(r->asked.output.show)) {
-        TRY(reviewTime(r, doneOut));
+        TRY(vplSpendTime(r, doneOut));
     }
-    const bool changed = r->done == 0; // another plan, of which there is no pass yet
-    if (changed && comesTooLate(r) && r->asked.method == VPL_METHOD_AUTO &&
-        r->plan->options.method == VPL_METHOD_RADIOSITY) {
-        TRY(vplFitPatches(r, leftOf(r) / r->plan->firstMs));
+    if (r->done == 0) { // another plan, of which there is no pass yet
+        return *doneOut ? VPL_SUCCESS : vplFitPlan(r, doneOut);
     }
-    *doneOut = *doneOut || (changed ? comesTooLate(r) : isTooLate(r));
+    *doneOut = *doneOut || (isTooLate(r) && !vplStopGrowth(r));
     return VPL_SUCCESS;
 }

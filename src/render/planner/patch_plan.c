@@ -10,19 +10,18 @@
 #include <math.h>
 
 enum {
-    FEWEST = 450,         // patches
     FEW_TRIANGLES = 40,   // of a scene that patches suit
     FEW_EMITTERS = 16,    // each takes a shadow ray per pixel and side
     PIXELS_PER_PATCH = 10 // in smaller pictures a pass of virtual lights is cheaper
 };
 
-// The error that FEWEST patches usually leave beside edges; it falls with the root of their number.
+// The error that VPL_FEWEST_PATCHES usually leave beside edges; it falls with the root of their number.
 static const double USUAL_ERROR = 0.042;
 
 static double patchesFor(double error)
 {
     const double over = USUAL_ERROR / error;
-    return fmax(FEWEST, FEWEST * over * over);
+    return fmax(VPL_FEWEST_PATCHES, VPL_FEWEST_PATCHES * over * over);
 }
 
 double vplMostPatches(const vplContext* context)
@@ -117,10 +116,14 @@ double vplForeseenLightRays(const vplPlan* p)
 // The error that one pass of virtual lights leaves, about; passes grow with the square of a smaller one.
 static const double ONE_PASS = 0.05;
 
-// Patches that a plain scene begins with; 0: virtual lights are quicker.
+// Patches that a plain scene begins with; 0: virtual lights are quicker. For a time the renderer finds their number when the coarse
+// picture has come.
 static double patchesOfPlain(const vplRunner* r, const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
+    if (!(o->stop.maxError > 0)) {
+        return isPlain(r, p) && VPL_FIRST_PATCHES <= vplMostPatches(r->run.context) ? VPL_FIRST_PATCHES : 0;
+    }
     const double error = o->stop.maxError, passes = fmax(1, ONE_PASS * ONE_PASS / (error * error));
     const double pixels = (double)o->output.width * o->output.height * passes;
     const double patches = isPlain(r, p) ? patchesFor(error) : INFINITY;
@@ -131,7 +134,7 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const bool can = o->stop.maxError > 0 && canUsePatches(r, p, o);
+    const bool can = (o->stop.maxError > 0 || o->stop.budgetMs > 0) && canUsePatches(r, p, o);
     const double plain = can ? patchesOfPlain(r, p) : 0;
     const bool hidden =
         can && fitInto(r, p, o, firstGather(o), VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p));
@@ -153,7 +156,7 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
         vplDecide(p, "patches", "a first try");
         vplDecide(p, "gather", "light is finer than patches");
     }
-    if (o->output.antialias == 8) {
+    if (o->output.antialias == 8 && o->stop.maxError > 0) {
         o->output.antialias = 16;
         vplDecide(p, "antialias", "most of the error will be at edges");
     }
@@ -163,4 +166,38 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
 void vplCountVainPatches(vplRenderer* r, double rays)
 {
     r->lightRays = r->lightRays > 0 ? fmax(1, r->lightRays - rays) : 0;
+}
+
+// ---- options of plans that follow
+
+vplRenderOptions vplAskedLikePlan(const vplRenderer* r)
+{
+    vplRenderOptions o = r->asked;
+    const vplRenderOptions* planned = &r->plan->options;
+    o.method = planned->method;
+    o.lights.shadows = planned->lights.shadows;
+    o.lights.compensation = planned->lights.compensation;
+    o.particles = planned->particles;
+    o.pipeline.kind = planned->pipeline.kind;
+    o.pipeline.interleave = planned->pipeline.interleave;
+    o.output.antialias = planned->output.antialias;
+    return o;
+}
+
+vplRenderOptions vplAskedWithPatches(const vplRenderer* r, int patches, int gather)
+{
+    vplRenderOptions o = r->asked;
+    o.method = VPL_METHOD_RADIOSITY;
+    o.lights.shadows = r->plan->options.lights.shadows;
+    o.radiosity.patches = patches;
+    o.radiosity.gather = gather;
+    o.output.antialias = o.output.antialias == 8 ? 16 : o.output.antialias;
+    return o;
+}
+
+vplRenderOptions vplAskedOfLights(const vplRenderer* r)
+{
+    vplRenderOptions o = r->asked;
+    o.lights.compensation = VPL_COMPENSATION_RAYS;
+    return o;
 }

@@ -13,6 +13,9 @@ bool vplChoosePatches(const vplRunner* runner, vplPlan* plan);
 // Patches of a first try instead of virtual lights or paths.
 #define VPL_FIRST_PATCHES 1000
 
+// The least that are chosen.
+#define VPL_FEWEST_PATCHES 450
+
 // If pixels gather the light of patches, the next try has so many times the rays.
 #define VPL_MORE_GATHER 2
 
@@ -23,6 +26,13 @@ bool vplChoosePatches(const vplRunner* runner, vplPlan* plan);
 // True if VPL_FIRST_PATCHES suit the scene and the options that were asked for, and are foreseen to cost at most as much as `rays` rays.
 bool vplMayTryPatches(const vplRunner* runner, const vplPlan* plan, const vplRenderOptions* asked,
                       double rays);
+
+// The options that were asked for: with all that the planner has chosen for virtual lights; with so many patches, and rays of a gather
+// (negative: auto); with rays that compensate the clamp. Virtual lights would have these rays anyway, and --method auto does not choose
+// radiosity where they are asked for.
+vplRenderOptions vplAskedLikePlan(const vplRenderer* renderer);
+vplRenderOptions vplAskedWithPatches(const vplRenderer* renderer, int patches, int gather);
+vplRenderOptions vplAskedOfLights(const vplRenderer* renderer);
 
 // Counts rays of patches that were in vain: they and those that follow get no more than virtual lights were foreseen to need.
 void vplCountVainPatches(vplRenderer* renderer, double rays);

@@ -24,7 +24,7 @@ static vplResult goOnWith(vplRenderer* r, const char* what, const vplRenderOptio
     return vplRenderer_Replace(r, o, false, r->error.total);
 }
 
-static vplResult trace(vplRenderer* r, bool* doneOut)
+vplResult vplGoOnWithPaths(vplRenderer* r, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
     o.method = VPL_METHOD_PATH;
@@ -32,31 +32,13 @@ static vplResult trace(vplRenderer* r, bool* doneOut)
     return goOnWith(r, "path tracing", &o, doneOut);
 }
 
-static vplResult refine(vplRenderer* r, int finer, bool* doneOut)
+vplResult vplGoOnFiner(vplRenderer* r, int finer, bool* doneOut)
 {
-    vplRenderOptions o = r->asked;
-    const vplRenderOptions* before = &r->plan->options;
-    o.method = before->method;
-    o.lights.shadows = before->lights.shadows;
-    o.lights.compensation = before->lights.compensation;
-    o.particles = before->particles;
-    o.pipeline.kind = before->pipeline.kind;
+    vplRenderOptions o = vplAskedLikePlan(r);
     o.output.antialias =
-        before->output.antialias < 16 && o.output.antialias == 8 ? 16 : before->output.antialias;
-    o.pipeline.interleave = before->pipeline.interleave >> finer;
+        o.output.antialias < 16 && r->asked.output.antialias == 8 ? 16 : o.output.antialias;
+    o.pipeline.interleave >>= finer;
     return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
-}
-
-// The options that were asked for, with so many patches, and rays of a gather (negative: auto).
-static vplRenderOptions askedWithPatches(const vplRenderer* r, int patches, int gather)
-{
-    vplRenderOptions o = r->asked;
-    o.method = VPL_METHOD_RADIOSITY;
-    o.lights.shadows = r->plan->options.lights.shadows;
-    o.radiosity.patches = patches;
-    o.radiosity.gather = gather;
-    o.output.antialias = o.output.antialias == 8 ? 16 : o.output.antialias;
-    return o;
 }
 
 // Multiplies the number of patches by VPL_MORE_PATCHES: as often as the way says in plain scenes; in others once, and the rays of the
@@ -70,7 +52,7 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     if (gather < 0 && r->lightRays > 0 && r->plan->options.radiosity.gather > 0) {
         gather = VPL_MORE_GATHER * r->plan->options.radiosity.gather;
     }
-    const vplRenderOptions o = askedWithPatches(r, patches, gather);
+    const vplRenderOptions o = vplAskedWithPatches(r, patches, gather);
     const double spent = (double)r->runner.stats.rays - r->planRays;
     TRY(goOnWith(r, "more patches", &o, doneOut));
     r->coarserSquare = way->rest;
@@ -78,18 +60,9 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// The options that were asked for, with rays that compensate the clamp. Virtual lights would have these rays anyway, and
-// --method auto does not choose radiosity where they are asked for.
-static vplRenderOptions askedOfLights(const vplRenderer* r)
-{
-    vplRenderOptions o = r->asked;
-    o.lights.compensation = VPL_COMPENSATION_RAYS;
-    return o;
-}
-
 static vplResult leavePatches(vplRenderer* r, bool* doneOut)
 {
-    const vplRenderOptions o = askedOfLights(r);
+    const vplRenderOptions o = vplAskedOfLights(r);
     TRY(goOnWith(r, "virtual lights", &o, doneOut));
     r->lightRays = fmax(r->lightRays, 1);
     return VPL_SUCCESS;
@@ -103,11 +76,11 @@ vplResult vplFitPatches(vplRenderer* r, double share)
     const vplRenderOptions* kept = r->kept.plan != NULL ? &r->kept.plan->options : &r->asked;
     const int patches = (int)(share * r->plan->options.radiosity.patches);
     if (kept->method == VPL_METHOD_RADIOSITY && patches > WORTHWHILE * kept->radiosity.patches) {
-        const vplRenderOptions fewer = askedWithPatches(r, patches, r->plan->options.radiosity.gather);
+        const vplRenderOptions fewer = vplAskedWithPatches(r, patches, r->plan->options.radiosity.gather);
         vplLog(r->runner.run.context, VPL_LOG_INFO, "the time is enough for %d patches", patches);
         return vplRenderer_Plan(r, &fewer, false);
     }
-    const vplRenderOptions o = askedOfLights(r);
+    const vplRenderOptions o = vplAskedOfLights(r);
     vplLog(r->runner.run.context, VPL_LOG_INFO,
            "more patches would take too long: goes on with virtual lights");
     TRY(vplRenderer_Plan(r, &o, false));
@@ -127,7 +100,7 @@ static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool*
     if (!may || !vplMayTryPatches(&r->runner, r->plan, &r->asked, share)) {
         return VPL_SUCCESS;
     }
-    const vplRenderOptions o = askedWithPatches(r, VPL_FIRST_PATCHES, r->asked.radiosity.gather);
+    const vplRenderOptions o = vplAskedWithPatches(r, VPL_FIRST_PATCHES, r->asked.radiosity.gather);
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
     vplForgetTruth(r); // its pixels were chosen by a noisy picture
@@ -160,7 +133,7 @@ vplResult vplTurnBack(vplRenderer* r, double asked, bool* doneOut)
            "after %d paths per pixel the noise is %.3g %%, more than foreseen: goes back to virtual lights "
            "that %d pixels share",
            r->paths, 100 * r->error.noise, r->turn.side * r->turn.side);
-    vplRenderOptions o = askedOfLights(r);
+    vplRenderOptions o = vplAskedOfLights(r);
     o.pipeline.interleave = r->turn.side;
     r->turn = (vplTurn){0, pathSquare, 0};
     *doneOut = false;
@@ -187,7 +160,7 @@ static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay
     const double rays = way->rays + (way->finer == 0 ? s->spent : 0);
     const int side = r->plan->options.pipeline.interleave >> way->finer;
     const bool turns = isfinite(rays) && r->plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED;
-    TRY(trace(r, doneOut));
+    TRY(vplGoOnWithPaths(r, doneOut));
     r->turn = (vplTurn){turns ? rays : 0, s->paths, turns ? side : 0};
     return VPL_SUCCESS;
 }
@@ -254,7 +227,7 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
         return tracePaths(r, s, &way, doneOut);
     }
     if (way.finer > 0) {
-        return refine(r, way.finer, doneOut);
+        return vplGoOnFiner(r, way.finer, doneOut);
     }
     if (way.passes > 1 || isinf(way.rays)) {
         return VPL_SUCCESS;
@@ -302,21 +275,6 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
     return vplFinishWay(r, &way, moreOut);
 }
 
-// The least squared error for the rays that the time is enough for.
-static vplResult spend(vplRenderer* r, const vplErrorState* s, bool* doneOut)
-{
-    const double rate = s->spent / fmax(1, vplClockMs() - r->planStart),
-                 rays = rate * (r->deadline - vplClockMs());
-    const double finish = s->bias + s->noise * s->spent / (s->spent + rays);
-    const double finer =
-        s->finer > 0 ? s->finerBias * s->bias + s->finerCost * s->noise * s->spent / rays : INFINITY;
-    const double paths = s->paths / rays;
-    if (paths < 0.8 * finish && paths < finer) {
-        return trace(r, doneOut);
-    }
-    return finer < 0.8 * finish ? refine(r, 1, doneOut) : VPL_SUCCESS;
-}
-
 vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut, bool* moreOut)
 {
     const vplErrorState s = vplErrorState_Of(r);
@@ -327,9 +285,9 @@ vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut, bool* moreO
         return reachByPatches(r, &s, asked, doneOut, moreOut);
     }
     if (r->asked.method == VPL_METHOD_AUTO) {
-        return asked > 0 ? reach(r, &s, asked, doneOut, moreOut) : spend(r, &s, doneOut);
+        return reach(r, &s, asked, doneOut, moreOut);
     }
-    if (asked > 0 && s.bias > asked * asked && s.noise < 0.1 * s.bias) {
+    if (s.bias > asked * asked && s.noise < 0.1 * s.bias) {
         snprintf(r->ended, sizeof r->ended,
                  "edges, blur and light that is left out are %.3g %% of it, which more passes do not mend",
                  100 * sqrt(s.bias));

@@ -70,7 +70,7 @@ double vplProofOf(const vplErrorState* s, double spread, double margin)
 // half of it beyond; at most as if they were independent. Few pixels have most of it, so that it is often estimated too low; but
 // evenly spread paths gain no more than about 1.5 n^(3/4) where an edge runs through the pixel (room-area, 16 to 128 paths: a
 // fifth to a fortieth of the variance).
-static double varianceOf(const vplErrorState* s, const vplEdgeStep* step, double paths)
+double vplVarianceOfEdges(const vplErrorState* s, const vplEdgeStep* step, double paths)
 {
     const double times = s->truthPaths / paths, alone = step->variance / paths;
     const double most = alone / (1.5 * sqrt(paths) * sqrt(sqrt(paths)));
@@ -84,10 +84,10 @@ double vplPathsForEdges(const vplErrorState* s, const vplEdgeStep* step, double 
 {
     const double goal = 0.5 * left;
     double paths = FEWEST_EDGE_PATHS;
-    while (paths < VPL_MAX_SAMPLES && varianceOf(s, step, 1.5 * paths) > goal) {
+    while (paths < VPL_MAX_SAMPLES && vplVarianceOfEdges(s, step, 1.5 * paths) > goal) {
         paths *= 2;
     }
-    return varianceOf(s, step, paths) > goal ? 1.5 * paths : paths;
+    return vplVarianceOfEdges(s, step, paths) > goal ? 1.5 * paths : paths;
 }
 
 // The least rays for passes and paths: N / m + V / n is `left`, and a m + c n least, for m times the passes and n paths.

@@ -45,6 +45,9 @@ double vplProofOf(const vplErrorState* state, double spread, double margin);
 // Paths through pixels at edges until their variance is half of `left`.
 double vplPathsForEdges(const vplErrorState* state, const vplEdgeStep* step, double left);
 
+// The variance of pixels at edges with so many paths each.
+double vplVarianceOfEdges(const vplErrorState* state, const vplEdgeStep* step, double paths);
+
 // The steps that may be traced: none where edges may not be traced, or were in vain too often.
 vplResult vplFindUsefulSteps(vplRenderer* renderer, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut);
 
@@ -58,6 +61,10 @@ vplResult vplProveEdges(vplRenderer* renderer, const vplErrorState* state, doubl
 // Follows a way that needs no more passes: traces its pixels at edges or, if it has none, more paths of the truth, which may prove
 // that the error is met.
 vplResult vplFinishWay(vplRenderer* renderer, const vplWay* way, bool* moreOut);
+
+// Go on with path tracing, and with the plan made finer `finer` times. The picture so far is kept until the new plan has one.
+vplResult vplGoOnWithPaths(vplRenderer* renderer, bool* doneOut);
+vplResult vplGoOnFiner(vplRenderer* renderer, int finer, bool* doneOut);
 
 // Traces pixels at edges where that costs little beside the passes so far, and is likely to prove the error.
 vplResult vplTryEdges(vplRenderer* renderer, const vplErrorState* state, double asked, bool* moreOut);

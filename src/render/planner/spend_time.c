@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// A render that has a time and not an error: which plan leaves the least error when the time is over. What it decides depends on the
+// clock; the plan that it ends with can be written and replayed.
+#include "base/clock.h"
+#include "render/planner/patch_plan.h"
+#include "render/planner/time_plan.h"
+#include "render/planner/ways.h"
+
+#include <math.h>
+#include <string.h>
+
+// Shorter times have no room for a truth.
+static const double LEAST_MS = 150;
+
+// The truth may take this share of the time.
+static const double SHARE_OF_TRUTH = 1.0 / 30, SHARE_OF_PATCHES = 0.3;
+
+static vplResult judge(vplRenderer* r, double share)
+{
+    return vplJudge(r, 0, true, share * r->asked.stop.budgetMs);
+}
+
+// ---- other plans
+
+// The least squared error for the rays that the time is enough for.
+static vplResult choosePlan(vplRenderer* r, bool* doneOut)
+{
+    const vplErrorState s = vplErrorState_Of(r);
+    const double rate = s.spent / fmax(1, vplClockMs() - r->planStart), rays = rate * vplTimeLeft(r);
+    const double finish = s.bias + s.noise * s.spent / (s.spent + rays);
+    const double finer =
+        s.finer > 0 ? s.finerBias * s.bias + s.finerCost * s.noise * s.spent / rays : INFINITY;
+    const double paths = s.paths / rays;
+    if (paths < 0.8 * finish && paths < finer) {
+        return vplGoOnWithPaths(r, doneOut);
+    }
+    return finer < 0.8 * finish ? vplGoOnFiner(r, 1, doneOut) : VPL_SUCCESS;
+}
+
+// ---- pixels at edges
+
+enum { FIRST_PATHS = 16 };
+
+// Where the truth is uncertain, so much of its standard error counts as error.
+static const double DOUBT = 0.5;
+
+// The time of a path through one pixel, as the truth's took.
+static double timeOfPath(const vplRenderer* r)
+{
+    double ms = 0;
+    for (int i = 0; i < r->runner.stats.stageCount; i++) {
+        const vplStageTime* stage = &r->runner.stats.stages[i];
+        ms = strcmp(stage->name, "truth") == 0 ? stage->ms : ms;
+    }
+    return ms / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
+}
+
+// What follows if pixels at edges are traced in the last part of the time.
+typedef struct Closing {
+    int pixels; // 0: none
+    double ms;
+    double square; // the squared error that is foreseen
+} Closing;
+
+// The pixels, and the share of the time for their paths, that leave the least error. Passes fill the rest of the time. `left`: of the
+// squared bias of a picture with more patches, and of the time.
+static Closing findClosing(const vplRenderer* r, const vplErrorState* s, const vplEdgeStep* steps, int count,
+                           double bias, double left)
+{
+    static const double SHARES[] = {0.1, 0.2, 0.35, 0.5, 0.75, 1};
+    const double pathMs = timeOfPath(r), all = s->once ? 1 : r->passMs / (r->passMs + left);
+    Closing best = {0, 0, bias * (s->bias + DOUBT * s->spread) + s->noise * all};
+    for (int i = 0; i < 6 * count; i++) {
+        const vplEdgeStep* step = &steps[i / 6];
+        const double share = s->once ? 1 : SHARES[i % 6], paths = share * left / (step->pixels * pathMs);
+        const double passes = s->once ? 1 : 1 + (1 - share) * left / r->passMs;
+        const double square = bias * (step->bias + DOUBT * step->spread) + step->noise / passes +
+                              vplVarianceOfEdges(s, step, paths);
+        if (paths >= FIRST_PATHS && square < best.square) {
+            best = (Closing){step->pixels, share * left, square};
+        }
+    }
+    return best;
+}
+
+// Powers of two, and half as many more, are spread most evenly.
+static int morePaths(int paths)
+{
+    return (paths & (paths - 1)) == 0 ? paths + paths / 2 : paths / 3 * 4;
+}
+
+// Traces paths through the chosen pixels until the time is over.
+static vplResult traceEdges(vplRenderer* r)
+{
+    const double allowed = 0.03 * r->asked.stop.budgetMs;
+    double each = 0;
+    int paths = FIRST_PATHS, before = 0;
+    do {
+        const double start = vplClockMs();
+        TRY(vplRenderer_TraceEdges(r, r->closingPixels, paths));
+        each = (vplClockMs() - start) / (paths - before);
+        before = paths;
+        paths = morePaths(paths);
+    } while (paths <= VPL_MAX_SAMPLES && (paths - before) * each < vplTimeLeft(r) + allowed);
+    vplLog(r->runner.run.context, VPL_LOG_INFO, "%d paths through each of %d pixels at edges fill the time", before,
+           r->edgePixels);
+    return VPL_SUCCESS;
+}
+
+// ---- after a pass
+
+// More patches are worth it if they leave at most this share of the squared error, and this share of the time.
+static const double WORTHWHILE = 0.8, SHARE_AFTER = 0.3;
+
+// The planner looks for other plans once, when a sixth of the time is over, and for edges in the second half of it.
+static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
+{
+    const double budget = r->asked.stop.budgetMs, left = vplTimeLeft(r) / budget;
+    if (r->truth == NULL && r->done >= 4 && left < 0.84 && left > 0.3) {
+        TRY(judge(r, SHARE_OF_TRUTH));
+        TRY(choosePlan(r, doneOut));
+    }
+    if (r->done >= 2 && left < 0.5 && r->closingPixels == 0) {
+        vplEdgeStep steps[VPL_EDGE_STEPS];
+        int count;
+        TRY(judge(r, SHARE_OF_TRUTH));
+        TRY(vplFindUsefulSteps(r, steps, &count));
+        const vplErrorState s = vplErrorState_Of(r);
+        const Closing closing = findClosing(r, &s, steps, count, 1, vplTimeLeft(r));
+        r->closingPixels = closing.pixels;
+        r->closingMs = closing.ms;
+    }
+    if (r->closingPixels > 0 && vplTimeLeft(r) - r->lastMs < r->closingMs) {
+        *doneOut = true;
+        return traceEdges(r);
+    }
+    return VPL_SUCCESS;
+}
+
+// Patches have no noise. Either there are more of them, whose time grows with the square of their number and whose squared error falls with
+// it, and paths at edges follow in what is left of the time; or these paths come at once.
+static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
+{
+    static const double MORE[] = {1.5, 2, 3, 4, 6};
+    const int patches = r->plan->options.radiosity.patches, most = (int)vplMostPatches(r->runner.run.context);
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    int count;
+    TRY(judge(r, SHARE_OF_PATCHES));
+    TRY(vplFindUsefulSteps(r, steps, &count));
+    const vplErrorState s = vplErrorState_Of(r);
+    const double left = vplTimeLeft(r), spent = r->passMs;
+    const Closing now = findClosing(r, &s, steps, count, 1, left);
+    double best = WORTHWHILE * now.square, more = 1;
+    for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
+        const double rest = left - spent * MORE[i] * MORE[i];
+        if (rest > SHARE_AFTER * left && MORE[i] * patches <= most) {
+            const Closing then = findClosing(r, &s, steps, count, 1 / MORE[i], rest);
+            more = then.square < best ? MORE[i] : more;
+            best = fmin(best, then.square);
+        }
+    }
+    if (more > 1) {
+        const vplRenderOptions o = vplAskedWithPatches(r, (int)(more * patches), -1);
+        vplLog(r->runner.run.context, VPL_LOG_INFO, "the error is about %.3g %%: goes on with %d patches",
+               100 * r->error.total, o.radiosity.patches);
+        *doneOut = false;
+        return vplRenderer_Replace(r, &o, false, -1);
+    }
+    r->closingPixels = now.pixels;
+    return now.pixels > 0 ? traceEdges(r) : VPL_SUCCESS;
+}
+
+vplResult vplSpendTime(vplRenderer* r, bool* doneOut)
+{
+    if (!vplHasTimeAlone(r) || r->asked.stop.budgetMs < LEAST_MS) {
+        return VPL_SUCCESS;
+    }
+    return vplFillsTimeWithPatches(r) ? spendOnPatches(r, doneOut)
+           : r->plan->progressive     ? spendOnPasses(r, doneOut)
+                                      : VPL_SUCCESS;
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Plans that fit into the time that is left, and what a render that has a time and no error does with it.
+#ifndef VPL_RENDER_PLANNER_TIME_PLAN_H
+#define VPL_RENDER_PLANNER_TIME_PLAN_H
+
+#include "render/renderer.h"
+
+// The time until the first picture of the plan that has not begun, in ms: as foreseen, without what planning has done already, and
+// as much longer or shorter as the last coarse picture was.
+double vplTimeOfFirst(const vplRenderer* renderer);
+
+// True if a time is given without an error, and the method is left to the planner.
+static inline bool vplHasTimeAlone(const vplRenderer* r)
+{
+    return r->asked.method == VPL_METHOD_AUTO && r->asked.stop.budgetMs > 0 && !(r->asked.stop.maxError > 0);
+}
+
+// True if, besides, the planner has chosen patches, as many as the time is enough for.
+static inline bool vplFillsTimeWithPatches(const vplRenderer* r)
+{
+    return vplHasTimeAlone(r) && r->plan != NULL && r->plan->options.method == VPL_METHOD_RADIOSITY;
+}
+
+// After a coarse picture: goes on with the plan that was asked for, or with as much of it as the time is enough for.
+vplResult vplFollowCoarse(vplRenderer* renderer, bool* doneOut);
+
+// Makes a plan that has not begun smaller, as far as options are left to the planner, until its first picture comes in time.
+// *doneOut: it cannot.
+vplResult vplFitPlan(vplRenderer* renderer, bool* doneOut);
+
+// Where a pass of twice the particles would come too late: passes stay as large as the last one. True if such a pass comes in time.
+bool vplStopGrowth(vplRenderer* renderer);
+
+// After a pass of a render that has a time and not an error: goes on with a finer plan, with more patches or with path tracing where that
+// promises less error, and spends the last part of the time on paths through pixels at edges where these do.
+vplResult vplSpendTime(vplRenderer* renderer, bool* doneOut);
+
+#endif
