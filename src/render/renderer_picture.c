@@ -98,10 +98,12 @@ void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderSta
         sum += (double)image->pixels[k] / (double)vplValueCount(image);
     }
     stats->passes = vplRenderer_Shown(r).passes;
-    stats->relativeErrorEstimate = e->total >= 0 ? e->total : e->noise;
+    const double error = e->total >= 0 ? e->total : e->noise;
+    stats->relativeErrorEstimate = isfinite(error) ? error : -1; // a black picture has none
     stats->errorEstimate = stats->relativeErrorEstimate >= 0 ? stats->relativeErrorEstimate * sum : -1;
     stats->relativeNoise = e->noise;
     stats->relativeBias = vplRenderer_GetPlan(r)->options.method == VPL_METHOD_PATH ? 0
+                          : stats->relativeErrorEstimate < 0 ? -1
                           : e->total >= 0 && e->noise >= 0
                               ? sqrt(fmax(0, e->total * e->total - e->noise * e->noise))
                               : e->total;

@@ -240,6 +240,9 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     if (r->done == 0) { // another plan, of which there is no pass yet
         return *doneOut ? VPL_SUCCESS : vplFitPlan(r, doneOut);
     }
-    *doneOut = *doneOut || (isTooLate(r) && !vplStopGrowth(r));
+    if (!*doneOut && isTooLate(r) && !vplStopGrowth(r)) {
+        *doneOut = true;
+        return vplSpendRest(r);
+    }
     return VPL_SUCCESS;
 }

@@ -68,11 +68,12 @@ enum {
 // Rays of form factors over the square of the number of patches (flat, loft, room: 0.9 to 1.2).
 static const double PAIR_RAYS = 1.2;
 
-// True if VPL_FIRST_PATCHES, whose light pixels gather by `gather` rays, are foreseen to cost at most as much as `rays` rays.
-static bool fitInto(const vplRunner* r, const vplPlan* p, const vplRenderOptions* o, int gather, double rays)
+// True if `count` patches, whose light pixels gather by `gather` rays, are foreseen to cost at most as much as `rays` rays.
+static bool fitInto(const vplRunner* r, const vplPlan* p, const vplRenderOptions* o, double count, int gather,
+                    double rays)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const double count = VPL_FIRST_PATCHES, pixels = (double)o->output.width * o->output.height;
+    const double pixels = (double)o->output.width * o->output.height;
     const double needs = PAIR_RAYS * count * count + (double)TRIANGLE_RAYS * g->triangleCount +
                          PIXEL_RAYS * pixels * p->emitterCount + VPL_PATH_RAY * pixels * gather;
     return needs <= rays && count <= vplMostPatches(r->run.context);
@@ -80,7 +81,7 @@ static bool fitInto(const vplRunner* r, const vplPlan* p, const vplRenderOptions
 
 bool vplMayTryPatches(const vplRunner* r, const vplPlan* p, const vplRenderOptions* asked, double rays)
 {
-    return fitInto(r, p, asked, 0, rays) && canUsePatches(r, p, asked);
+    return fitInto(r, p, asked, VPL_FIRST_PATCHES, 0, rays) && canUsePatches(r, p, asked);
 }
 
 // ---- the first plan
@@ -105,25 +106,25 @@ static int firstGather(const vplRenderOptions* o)
 // the higher value is taken.
 static const double HIDDEN_RAYS = 2.4;
 
+static bool isHidden(const vplPlan* p)
+{
+    return p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH && p->look.worth > 0;
+}
+
 double vplForeseenLightRays(const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
     const double error = o->stop.maxError, pixels = (double)o->output.width * o->output.height;
-    const bool hidden = p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH && p->look.worth > 0;
-    return error > 0 && hidden ? HIDDEN_RAYS / p->look.worth * pixels / (error * error) : 0;
+    return error > 0 && isHidden(p) ? HIDDEN_RAYS / p->look.worth * pixels / (error * error) : 0;
 }
 
 // The error that one pass of virtual lights leaves, about; passes grow with the square of a smaller one.
 static const double ONE_PASS = 0.05;
 
-// Patches that a plain scene begins with; 0: virtual lights are quicker. For a time the renderer finds their number when the coarse
-// picture has come.
+// Patches that a plain scene begins with; 0: virtual lights are quicker.
 static double patchesOfPlain(const vplRunner* r, const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
-    if (!(o->stop.maxError > 0)) {
-        return isPlain(r, p) && VPL_FIRST_PATCHES <= vplMostPatches(r->run.context) ? VPL_FIRST_PATCHES : 0;
-    }
     const double error = o->stop.maxError, passes = fmax(1, ONE_PASS * ONE_PASS / (error * error));
     const double pixels = (double)o->output.width * o->output.height * passes;
     const double patches = isPlain(r, p) ? patchesFor(error) : INFINITY;
@@ -134,10 +135,10 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const bool can = (o->stop.maxError > 0 || o->stop.budgetMs > 0) && canUsePatches(r, p, o);
+    const bool can = o->stop.maxError > 0 && canUsePatches(r, p, o);
     const double plain = can ? patchesOfPlain(r, p) : 0;
     const bool hidden =
-        can && fitInto(r, p, o, firstGather(o), VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p));
+        can && fitInto(r, p, o, VPL_FIRST_PATCHES, firstGather(o), VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p));
     if (plain == 0 && !hidden) {
         return false;
     }
@@ -156,11 +157,20 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
         vplDecide(p, "patches", "a first try");
         vplDecide(p, "gather", "light is finer than patches");
     }
-    if (o->output.antialias == 8 && o->stop.maxError > 0) {
+    if (o->output.antialias == 8) {
         o->output.antialias = 16;
         vplDecide(p, "antialias", "most of the error will be at edges");
     }
     return true;
+}
+
+bool vplPatchesSuitTime(const vplRunner* r, const vplPlan* p, const vplRenderOptions* asked, double rays, int* gatherOut)
+{
+    const bool plain = isPlain(r, p);
+    *gatherOut = plain ? asked->radiosity.gather : firstGather(asked);
+    const double patches = plain ? VPL_FEWEST_PATCHES : VPL_FIRST_PATCHES;
+    return (plain || isHidden(p)) && canUsePatches(r, p, asked) &&
+           fitInto(r, p, asked, patches, plain ? 0 : VPL_FEWEST_GATHER, rays);
 }
 
 void vplCountVainPatches(vplRenderer* r, double rays)

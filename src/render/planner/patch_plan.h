@@ -16,6 +16,9 @@ bool vplChoosePatches(const vplRunner* runner, vplPlan* plan);
 // The least that are chosen.
 #define VPL_FEWEST_PATCHES 450
 
+// The least rays per pixel that are chosen for a gather.
+#define VPL_FEWEST_GATHER 4
+
 // If pixels gather the light of patches, the next try has so many times the rays.
 #define VPL_MORE_GATHER 2
 
@@ -33,6 +36,11 @@ bool vplMayTryPatches(const vplRunner* runner, const vplPlan* plan, const vplRen
 vplRenderOptions vplAskedLikePlan(const vplRenderer* renderer);
 vplRenderOptions vplAskedWithPatches(const vplRenderer* renderer, int patches, int gather);
 vplRenderOptions vplAskedOfLights(const vplRenderer* renderer);
+
+// True if patches are likely to leave less error in a given time than virtual lights: in plain scenes, and where doors hide most lights
+// from the picture; and if the fewest of them are foreseen to cost at most as much as `rays` rays. *gatherOut: rays of their gather.
+bool vplPatchesSuitTime(const vplRunner* runner, const vplPlan* plan, const vplRenderOptions* asked, double rays,
+                        int* gatherOut);
 
 // Counts rays of patches that were in vain: they and those that follow get no more than virtual lights were foreseen to need.
 void vplCountVainPatches(vplRenderer* renderer, double rays);

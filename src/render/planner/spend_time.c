@@ -112,6 +112,26 @@ static vplResult traceEdges(vplRenderer* r)
 // More patches are worth it if they leave at most this share of the squared error, and this share of the time.
 static const double WORTHWHILE = 0.8, SHARE_AFTER = 0.3;
 
+// The time of a picture with 16 samples per pixel instead of 8.
+static const double SMOOTHER = 1.8;
+
+// The picture's error is judged, and steps of edges are found.
+static vplResult lookForEdges(vplRenderer* r, double share, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut)
+{
+    TRY(judge(r, share));
+    return vplFindUsefulSteps(r, steps, countOut);
+}
+
+// Traces edges in all of the time that is left.
+static vplResult fillWithEdges(vplRenderer* r, const vplEdgeStep* steps, int count)
+{
+    vplErrorState s = vplErrorState_Of(r);
+    s.once = true; // no pass follows
+    const Closing closing = findClosing(r, &s, steps, count, 1, vplTimeLeft(r));
+    r->closingPixels = closing.pixels;
+    return closing.pixels > 0 ? traceEdges(r) : VPL_SUCCESS;
+}
+
 // The planner looks for other plans once, when a sixth of the time is over, and for edges in the second half of it.
 static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
 {
@@ -123,8 +143,7 @@ static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
     if (r->done >= 2 && left < 0.5 && r->closingPixels == 0) {
         vplEdgeStep steps[VPL_EDGE_STEPS];
         int count;
-        TRY(judge(r, SHARE_OF_TRUTH));
-        TRY(vplFindUsefulSteps(r, steps, &count));
+        TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
         const vplErrorState s = vplErrorState_Of(r);
         const Closing closing = findClosing(r, &s, steps, count, 1, vplTimeLeft(r));
         r->closingPixels = closing.pixels;
@@ -145,14 +164,16 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
     const int patches = r->plan->options.radiosity.patches, most = (int)vplMostPatches(r->runner.run.context);
     vplEdgeStep steps[VPL_EDGE_STEPS];
     int count;
-    TRY(judge(r, SHARE_OF_PATCHES));
-    TRY(vplFindUsefulSteps(r, steps, &count));
+    TRY(lookForEdges(r, SHARE_OF_PATCHES, steps, &count));
     const vplErrorState s = vplErrorState_Of(r);
-    const double left = vplTimeLeft(r), spent = r->passMs;
+    const int gather = r->plan->options.radiosity.gather;
+    const double left = vplTimeLeft(r), smoother = gather > 0 ? VPL_MORE_GATHER : SMOOTHER;
+    const double picture = smoother * vplShareOfPicture(r->plan) * r->passMs;
+    const double exchange = (1 - vplShareOfPicture(r->plan)) * r->passMs;
     const Closing now = findClosing(r, &s, steps, count, 1, left);
     double best = WORTHWHILE * now.square, more = 1;
     for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
-        const double rest = left - spent * MORE[i] * MORE[i];
+        const double rest = left - picture - exchange * MORE[i] * MORE[i];
         if (rest > SHARE_AFTER * left && MORE[i] * patches <= most) {
             const Closing then = findClosing(r, &s, steps, count, 1 / MORE[i], rest);
             more = then.square < best ? MORE[i] : more;
@@ -160,14 +181,13 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
         }
     }
     if (more > 1) {
-        const vplRenderOptions o = vplAskedWithPatches(r, (int)(more * patches), -1);
+        const vplRenderOptions o = vplAskedWithPatches(r, (int)(more * patches), VPL_MORE_GATHER * gather);
         vplLog(r->runner.run.context, VPL_LOG_INFO, "the error is about %.3g %%: goes on with %d patches",
                100 * r->error.total, o.radiosity.patches);
         *doneOut = false;
         return vplRenderer_Replace(r, &o, false, -1);
     }
-    r->closingPixels = now.pixels;
-    return now.pixels > 0 ? traceEdges(r) : VPL_SUCCESS;
+    return fillWithEdges(r, steps, count);
 }
 
 vplResult vplSpendTime(vplRenderer* r, bool* doneOut)
@@ -178,4 +198,20 @@ vplResult vplSpendTime(vplRenderer* r, bool* doneOut)
     return vplFillsTimeWithPatches(r) ? spendOnPatches(r, doneOut)
            : r->plan->progressive     ? spendOnPasses(r, doneOut)
                                       : VPL_SUCCESS;
+}
+
+// Less of the time is not worth it.
+static const double LEAST_REST = 0.1;
+
+vplResult vplSpendRest(vplRenderer* r)
+{
+    const double budget = r->asked.stop.budgetMs;
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    int count;
+    if (!vplHasTimeAlone(r) || budget < LEAST_MS || !r->plan->progressive || r->edges != NULL ||
+        vplTimeLeft(r) < LEAST_REST * budget) {
+        return VPL_SUCCESS;
+    }
+    TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
+    return fillWithEdges(r, steps, count);
 }

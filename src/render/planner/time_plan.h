@@ -9,6 +9,9 @@
 // as much longer or shorter as the last coarse picture was.
 double vplTimeOfFirst(const vplRenderer* renderer);
 
+// The share of the time of the first pass that drawing the picture is foreseen to take.
+double vplShareOfPicture(const vplPlan* plan);
+
 // True if a time is given without an error, and the method is left to the planner.
 static inline bool vplHasTimeAlone(const vplRenderer* r)
 {
@@ -34,5 +37,8 @@ bool vplStopGrowth(vplRenderer* renderer);
 // After a pass of a render that has a time and not an error: goes on with a finer plan, with more patches or with path tracing where that
 // promises less error, and spends the last part of the time on paths through pixels at edges where these do.
 vplResult vplSpendTime(vplRenderer* renderer, bool* doneOut);
+
+// Where another pass would come too late: paths through pixels at edges fill the rest of the time.
+vplResult vplSpendRest(vplRenderer* renderer);
 
 #endif
