@@ -103,7 +103,7 @@ void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderSta
     stats->errorEstimate = stats->relativeErrorEstimate >= 0 ? stats->relativeErrorEstimate * sum : -1;
     stats->relativeNoise = e->noise;
     stats->relativeBias = vplRenderer_GetPlan(r)->options.method == VPL_METHOD_PATH ? 0
-                          : stats->relativeErrorEstimate < 0 ? -1
+                          : stats->relativeErrorEstimate < 0                        ? -1
                           : e->total >= 0 && e->noise >= 0
                               ? sqrt(fmax(0, e->total * e->total - e->noise * e->noise))
                               : e->total;

@@ -137,8 +137,8 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const bool can = o->stop.maxError > 0 && canUsePatches(r, p, o);
     const double plain = can ? patchesOfPlain(r, p) : 0;
-    const bool hidden =
-        can && fitInto(r, p, o, VPL_FIRST_PATCHES, firstGather(o), VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p));
+    const bool hidden = can && fitInto(r, p, o, VPL_FIRST_PATCHES, firstGather(o),
+                                       VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p));
     if (plain == 0 && !hidden) {
         return false;
     }
@@ -164,7 +164,8 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
     return true;
 }
 
-bool vplPatchesSuitTime(const vplRunner* r, const vplPlan* p, const vplRenderOptions* asked, double rays, int* gatherOut)
+bool vplPatchesSuitTime(const vplRunner* r, const vplPlan* p, const vplRenderOptions* asked, double rays,
+                        int* gatherOut)
 {
     const bool plain = isPlain(r, p);
     *gatherOut = plain ? asked->radiosity.gather : firstGather(asked);

@@ -39,8 +39,8 @@ vplRenderOptions vplAskedOfLights(const vplRenderer* renderer);
 
 // True if patches are likely to leave less error in a given time than virtual lights: in plain scenes, and where doors hide most lights
 // from the picture; and if the fewest of them are foreseen to cost at most as much as `rays` rays. *gatherOut: rays of their gather.
-bool vplPatchesSuitTime(const vplRunner* runner, const vplPlan* plan, const vplRenderOptions* asked, double rays,
-                        int* gatherOut);
+bool vplPatchesSuitTime(const vplRunner* runner, const vplPlan* plan, const vplRenderOptions* asked,
+                        double rays, int* gatherOut);
 
 // Counts rays of patches that were in vain: they and those that follow get no more than virtual lights were foreseen to need.
 void vplCountVainPatches(vplRenderer* renderer, double rays);

@@ -35,8 +35,7 @@ vplResult vplGoOnWithPaths(vplRenderer* r, bool* doneOut)
 vplResult vplGoOnFiner(vplRenderer* r, int finer, bool* doneOut)
 {
     vplRenderOptions o = vplAskedLikePlan(r);
-    o.output.antialias =
-        o.output.antialias < 16 && r->asked.output.antialias == 8 ? 16 : o.output.antialias;
+    o.output.antialias = o.output.antialias < 16 && r->asked.output.antialias == 8 ? 16 : o.output.antialias;
     o.pipeline.interleave >>= finer;
     return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }

@@ -102,8 +102,8 @@ static vplResult traceEdges(vplRenderer* r)
         before = paths;
         paths = morePaths(paths);
     } while (paths <= VPL_MAX_SAMPLES && (paths - before) * each < vplTimeLeft(r) + allowed);
-    vplLog(r->runner.run.context, VPL_LOG_INFO, "%d paths through each of %d pixels at edges fill the time", before,
-           r->edgePixels);
+    vplLog(r->runner.run.context, VPL_LOG_INFO, "%d paths through each of %d pixels at edges fill the time",
+           before, r->edgePixels);
     return VPL_SUCCESS;
 }
 

@@ -69,7 +69,8 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     *o = r->asked;
     const int emitters = countEmitters(r);
     if (emitters > FEW_EMITTERS) {
-        const double fits = r->plan != NULL && !r->coarse ? FIRST_SHARE * vplTimeLeft(r) / r->plan->firstMs : 1;
+        const double fits =
+            r->plan != NULL && !r->coarse ? FIRST_SHARE * vplTimeLeft(r) / r->plan->firstMs : 1;
         o->lights.emitterSamples = (int)fmax(FEW_EMITTERS, ceil(fmin(share, fits) * emitters));
     }
     o->stop.budgetMs =
@@ -250,7 +251,8 @@ static vplResult shrinkPasses(vplRenderer* r)
     const bool compensates = asked->lights.compensation == VPL_COMPENSATION_USUAL;
     for (size_t i = 0; i < sizeof LESS / sizeof *LESS && vplTimeOfFirst(r) > SURE * vplTimeLeft(r); i++) {
         vplRenderOptions o = planned;
-        o.output.antialias = smooth ? vplMini(planned.output.antialias, LESS[i].antialias) : o.output.antialias;
+        o.output.antialias =
+            smooth ? vplMini(planned.output.antialias, LESS[i].antialias) : o.output.antialias;
         o.particles.count = few ? (int)(LESS[i].particles * planned.particles.count) : o.particles.count;
         if (compensates && !LESS[i].compensates) {
             o.lights.compensation = VPL_COMPENSATION_NONE;

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+// Tests of renders that have a time: how they fill it.
+#include "scenes.h"
+
+#include "base/clock.h"
+#include "render/planner/time_plan.h"
+
+static vplRenderOptions optionsFor(double budgetMs)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.output.width = 64;
+    o.output.height = 36;
+    o.stop.budgetMs = budgetMs;
+    return o;
+}
+
+// A renderer whose time is practically endless, after so many passes of the plan that follows the coarse one.
+static vplRenderer* rendererAfter(const vplScene* scene, const vplRenderOptions* o, int passes)
+{
+    vplRenderer* r;
+    bool done;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    r->deadline = vplClockMs() + 1e7;
+    do {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    } while (r->coarse || r->done < passes);
+    return r;
+}
+
+static vplImage* imageOf(vplRenderer* r)
+{
+    vplImage* image;
+    assert_int_equal(vplRenderer_GetImage(r, &image, NULL), VPL_SUCCESS);
+    return image;
+}
+
+static void assertSameBits(const vplImage* a, const vplImage* b)
+{
+    assert_true(vplImage_Hash(a) == vplImage_Hash(b));
+}
+
+// In a scene with textures virtual lights are chosen. After passes of 125 and 250 particles they stay at 250.
+TEST(PassesThatStopGrowingKeepTheirPicture, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/textured-room.json");
+    vplRenderOptions o = optionsFor(1e7);
+    o.method = VPL_METHOD_KELLER;
+    o.particles.count = -1;
+    o.stop.growFrom = 500;
+    vplRenderer* r = rendererAfter(scene, &o, 2);
+    vplImage* before = imageOf(r);
+    assert_int_equal(r->plan->options.particles.count, 4000);
+    assert_true(vplStopGrowth(r));
+    assert_int_equal(r->plan->options.particles.count, 1000);
+    assert_false(vplStopGrowth(r)); // it has stopped
+    vplImage* after = imageOf(r);
+    assertSameBits(before, after);
+    bool done;
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    vplImage* third = imageOf(r);
+    vplRenderOptions replay = r->plan->options;
+    replay.stop.passes = 3;
+    replay.stop.budgetMs = 0;
+    vplImage* again = renderScene(scene, &replay, NULL);
+    assertSameBits(third, again);
+    vplImage* images[] = {before, after, third, again};
+    for (int i = 0; i < 4; i++) {
+        vplImage_Destroy(images[i]);
+    }
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
+
+TEST(GrowthStopsOnlyWhereItIsExactAndInTime, 2)
+{
+    static const struct {
+        int particles, growFrom;
+        double lastMs;
+        bool stops;
+    } ROWS[] = {
+        {-1, 500, 0, true},
+        {-1, 500, 1e9, false}, // another such pass would be too late
+        {-1, 300, 0, false},   // 4000 is not 300 times a power of two
+        {4000, 500, 0, false}, // the caller's number
+    };
+    vplScene* scene = loadScene(context, "room.json");
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        vplRenderOptions o = optionsFor(1e7);
+        o.method = VPL_METHOD_KELLER;
+        o.particles.count = ROWS[i].particles;
+        o.stop.growFrom = ROWS[i].growFrom;
+        vplRenderer* r = rendererAfter(scene, &o, 1);
+        r->lastMs = ROWS[i].lastMs;
+        if (vplStopGrowth(r) != ROWS[i].stops) {
+            fail_msg("row %zu", i);
+        }
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+}
+
+// Plans become smaller as the machine is slower, but only in what the caller leaves open.
+TEST(PlansShrinkUntilTheyFit, 2)
+{
+    static const struct {
+        double pace;
+        bool open;
+        int antialias, particles;
+        vplCompensation compensation;
+        bool tooLate;
+    } ROWS[] = {
+        {1e-6, true, 8, 4000, VPL_COMPENSATION_RAYS, false},
+        {1e6, true, 4, 1000, VPL_COMPENSATION_NONE, true},
+        {1e6, false, 2, 640, VPL_COMPENSATION_RAYS, true},
+    };
+    vplScene* scene = openScene(context, "examples/scenes/textured-room.json");
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        vplRenderOptions o = optionsFor(1000);
+        o.method = VPL_METHOD_KELLER;
+        if (!ROWS[i].open) {
+            o.output.antialias = ROWS[i].antialias;
+            o.particles.count = ROWS[i].particles;
+            o.lights.compensation = ROWS[i].compensation;
+        }
+        vplRenderer* r;
+        bool tooLate;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Plan(r, &o, false), VPL_SUCCESS);
+        r->deadline = vplClockMs() + 1000;
+        r->pace = ROWS[i].pace;
+        assert_int_equal(vplFitPlan(r, &tooLate), VPL_SUCCESS);
+        const vplRenderOptions* planned = &r->plan->options;
+        assert_int_equal(planned->output.antialias, ROWS[i].antialias);
+        assert_int_equal(planned->particles.count, ROWS[i].particles);
+        assert_int_equal(planned->lights.compensation, ROWS[i].compensation);
+        assert_true(tooLate == ROWS[i].tooLate);
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+}
+
+// The time foreseen for a plan does not count the geometry, which planning has made.
+TEST(TheTimeOfAPlanIsWithoutWhatIsDone, 2)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    const vplRenderOptions o = optionsFor(1000);
+    vplRenderer* r;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    double geometry = 0;
+    for (int i = 0; i < r->plan->stageCount; i++) {
+        geometry += strcmp(r->plan->stages[i].name, "geometry") == 0 ? r->plan->stages[i].ms : 0;
+    }
+    assert_true(geometry > 0);
+    assert_true(fabs(vplTimeOfFirst(r) - (r->plan->firstMs - geometry)) < 1e-9 * r->plan->firstMs);
+    r->pace = 3;
+    assert_true(fabs(vplTimeOfFirst(r) - 3 * (r->plan->firstMs - geometry)) < 1e-8 * r->plan->firstMs);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
+
+static vplMethod methodInTime(vplContext* context, const char* path, const vplRenderOptions* o)
+{
+    vplScene* scene = openScene(context, path);
+    vplRenderer* r;
+    bool done = false;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    while (r->coarse && !done) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    const vplMethod method = r->plan->options.method;
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+    return method;
+}
+
+// After the coarse picture patches follow in rooms of few triangles and where doors hide the lights, if there is time for them.
+TEST(PatchesFillTheTimeWhereTheySuit, 2)
+{
+    static const struct {
+        const char* scene;
+        double ms;
+        vplMethod method;
+    } ROWS[] = {
+        {"closed-room", 1e6, VPL_METHOD_RADIOSITY}, {"flat", 1e6, VPL_METHOD_RADIOSITY},
+        {"closed-room", 1, VPL_METHOD_KELLER},      {"flat", 1, VPL_METHOD_KELLER},
+        {"loft", 1e6, VPL_METHOD_KELLER},           {"textured-room", 1e6, VPL_METHOD_KELLER},
+        {"door-ajar", 1e6, VPL_METHOD_KELLER},
+    };
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "examples/scenes/%s.json", ROWS[i].scene);
+        const vplRenderOptions o = optionsFor(ROWS[i].ms);
+        if (methodInTime(context, path, &o) != ROWS[i].method) {
+            fail_msg("%s in %g ms", ROWS[i].scene, ROWS[i].ms);
+        }
+    }
+    vplRenderOptions o = optionsFor(1e6);
+    o.lights.compensation = VPL_COMPENSATION_RAYS; // of virtual lights
+    assert_int_equal(methodInTime(context, "examples/scenes/closed-room.json", &o), VPL_METHOD_KELLER);
+}
+
+// Paths that follow others give the bits of all at once, and are counted once.
+TEST(TracedEdgesGoOn, 2)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = optionsFor(1e7);
+    o.method = VPL_METHOD_KELLER;
+    o.particles.count = 100;
+    vplRenderer* r = rendererAfter(scene, &o, 2);
+    const int64_t before = r->otherRays;
+    assert_int_equal(vplRenderer_TraceEdges(r, 100, 16), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_TraceEdges(r, 100, 48), VPL_SUCCESS);
+    const int64_t rays = r->otherRays - before;
+    vplImage* first = imageOf(r);
+    vplRenderer_ForgetEdges(r);
+    assert_int_equal(vplRenderer_TraceEdges(r, 100, 48), VPL_SUCCESS);
+    vplImage* second = imageOf(r);
+    assertSameBits(first, second);
+    assert_true(r->otherRays - before == 2 * rays);
+    assert_int_equal(vplRenderer_TraceEdges(r, 50, 48), VPL_SUCCESS); // others, not more
+    assert_int_equal(r->edgePixels, 50);
+    vplImage* third = imageOf(r);
+    assert_true(vplImage_Hash(third) != vplImage_Hash(second));
+    vplImage_Destroy(first);
+    vplImage_Destroy(second);
+    vplImage_Destroy(third);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
+
+static void setTime(vplRenderer* r, double ms)
+{
+    r->asked.stop.budgetMs = ms;
+    r->deadline = vplClockMs() + ms;
+}
+
+// Paths at edges fill the time that is left, and make the picture better. It can be replayed.
+TEST(PathsAtEdgesFillTheRest, 2, SLOW)
+{
+    vplScene* scene = openScene(context, "examples/scenes/loft.json");
+    vplRenderOptions o = optionsFor(1e7), replay;
+    vplRenderer* r = rendererAfter(scene, &o, 5);
+    vplImage* before = imageOf(r);
+    setTime(r, 2000);
+    assert_int_equal(vplSpendRest(r), VPL_SUCCESS);
+    vplImage* after = imageOf(r);
+    assert_true(r->edgePaths >= 16);
+    assert_true(vplTimeLeft(r) > -0.3 * 2000);
+    assert_true(errorAgainstPaths(scene, after) < 0.9 * errorAgainstPaths(scene, before));
+    replay = r->plan->options;
+    replay.stop.budgetMs = 0;
+    replay.stop.passes = 5;
+    replay.path.edgePixels = r->edgePixels;
+    replay.path.edgePaths = r->edgePaths;
+    vplImage* again = renderScene(scene, &replay, NULL);
+    assertSameBits(after, again);
+    vplImage_Destroy(before);
+    vplImage_Destroy(after);
+    vplImage_Destroy(again);
+    setTime(r, 100); // too short
+    vplRenderer_ForgetEdges(r);
+    assert_int_equal(vplSpendRest(r), VPL_SUCCESS);
+    assert_null(r->edges);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
+
+// Where a first number of patches took little of the time, more follow; else paths at edges.
+TEST(MorePatchesFollowWhileThereIsTime, 2, SLOW)
+{
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    const vplRenderOptions o = optionsFor(1e7);
+    for (int i = 0; i < 2; i++) {
+        vplRenderer* r;
+        bool done = false;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        r->deadline = vplClockMs() + 1e7;
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS); // the coarse picture
+        vplRenderOptions few = r->plan->options;
+        few.radiosity.patches = 500;
+        assert_int_equal(vplRenderer_Plan(r, &few, false), VPL_SUCCESS);
+        assert_int_equal(few.method, VPL_METHOD_RADIOSITY);
+        setTime(r, 1e6); // until the picture is there
+        assert_int_equal(vplRenderer_RunPass(r), VPL_SUCCESS);
+        r->done = 1;
+        r->passMs = i == 0 ? 10 : 1500;
+        setTime(r, 2000);
+        done = true;
+        assert_int_equal(vplSpendTime(r, &done), VPL_SUCCESS);
+        assert_true(done == (i == 1));
+        assert_true((r->plan->options.radiosity.patches > 700) == (i == 0));
+        assert_true((r->edgePaths >= 16) == (i == 1));
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+}
+
+// The lamp is above a plate that shades all that the camera sees; other light finds its way around the plate. The error of a black
+// picture is not relative to anything, and the plan can be written.
+TEST(ABlackPictureHasNoRelativeError, 2)
+{
+    const char* path = temporaryName(".black");
+    vplScene* scene = closedCubeScene(context, 0.8f, 0);
+    addThing(scene, VPL_OBJECT_BOX, 0, (vplVec3){0, 0, 0}, 0, 0, (vplVec3){1.9f, 0.1f, 1.9f});
+    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 0.5f, 0}, (vplVec3){0, -1, 0}, 1);
+    aim(scene, (vplVec3){0, -0.3f, 0}, (vplVec3){0.1f, -1, 0.05f});
+    vplRenderOptions o = optionsFor(0);
+    o.method = VPL_METHOD_DIRECT;
+    o.stop.maxError = 0.1;
+    vplRenderer* r;
+    vplImage* image;
+    vplRenderStats stats;
+    bool done;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    assert_true(done && isinf(r->error.total));
+    assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
+    assert_true(stats.relativeErrorEstimate < 0 && stats.errorEstimate < 0 && stats.relativeBias < 0);
+    assert_int_equal(vplRenderer_WritePlan(r, path), VPL_SUCCESS);
+    remove(path);
+    vplImage_Destroy(image);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
