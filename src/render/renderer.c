@@ -148,6 +148,7 @@ static vplResult create(const vplScene* scene, const vplRenderOptions* options, 
     r->runner.progress = isfinite(r->deadline) || options->progress != NULL ? watch : NULL;
     r->runner.progressUser = r;
     r->runner.stats.clampLoss = -1;
+    r->runner.choosesMethods = options->method == VPL_METHOD_AUTO;
     *rendererOut = r;
     return vplRenderer_PlanFirst(r);
 }

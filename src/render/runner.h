@@ -28,8 +28,9 @@ typedef struct vplRunner {
     vplRun run;
     vplHistory* history;
     vplRenderStats stats;
-    bool plans;     // results serve decisions and are not reported yet
-    bool foretells; // the plan is for a reader: its bytes may take some time
+    bool plans;          // results serve decisions and are not reported yet
+    bool foretells;      // the plan is for a reader: its bytes may take some time
+    bool choosesMethods; // the method was left to the planner, which does not refuse its own plans
     vplProgressFcn* progress;
     void* progressUser;
     double stepFrom, stepTo;   // share of the whole that the pass under way has

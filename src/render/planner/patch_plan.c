@@ -188,6 +188,7 @@ vplRenderOptions vplAskedLikePlan(const vplRenderer* r)
     o.method = planned->method;
     o.lights.shadows = planned->lights.shadows;
     o.lights.compensation = planned->lights.compensation;
+    o.lights.emitterSamples = planned->lights.emitterSamples;
     o.particles = planned->particles;
     o.pipeline.kind = planned->pipeline.kind;
     o.pipeline.interleave = planned->pipeline.interleave;
