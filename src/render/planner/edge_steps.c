@@ -110,6 +110,12 @@ vplResult vplFindEdgeSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], in
 
 // ---- tries
 
+bool vplHasRoomForWiderTruth(const vplRenderer* r)
+{
+    const double pixels = (double)VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
+    return pixels <= VPL_MOST_TRUTH_PIXELS && pixels <= 0.5 * r->asked.output.width * r->asked.output.height;
+}
+
 vplResult vplProveEdges(vplRenderer* r, const vplErrorState* s, double asked, bool* moreOut)
 {
     const vplEdgeNoise noise = vplEdges_Noise(r->edges, r->asked.output.width * r->asked.output.height);
@@ -121,6 +127,10 @@ vplResult vplProveEdges(vplRenderer* r, const vplErrorState* s, double asked, bo
     }
     if (left > 0 && !noisy && vplProofOf(s, s->spread, left) < s->spent + cost) {
         return vplRefineTruth(r);
+    }
+    if (left > 0 && !noisy && s->stuck && s->truth < s->spent + cost &&
+        vplHasRoomForWiderTruth(r)) {
+        return vplWidenTruth(r);
     }
     vplLog(r->runner.run.context, VPL_LOG_INFO,
            "%d paths through each of %d pixels at edges leave an error of about %.3g %%, which is not enough",

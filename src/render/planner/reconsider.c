@@ -171,12 +171,6 @@ static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay
 // instead of 12.
 static const double KNOWING = 0.5, UNSURE = 0.1;
 
-static bool hasRoomForWiderTruth(const vplRenderer* r)
-{
-    const double pixels = (double)VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
-    return pixels <= VPL_MOST_TRUTH_PIXELS && pixels <= 0.5 * r->asked.output.width * r->asked.output.height;
-}
-
 // Improves the truth if it does not tell the error well enough for a decision: by more paths per pixel, if it has cost less than `paths`
 // rays so far; or, if more paths no longer reduce its spread because few pixels have most of the error, by more pixels, if it has cost less
 // than `pixels` rays. *moreOut: the truth was improved, and the picture must be judged again.
@@ -188,7 +182,7 @@ static vplResult learnMore(vplRenderer* r, const vplErrorState* s, double asked,
         *moreOut = true;
         return vplRefineTruth(r);
     }
-    if (unknown && s->stuck && s->truth < pixels && hasRoomForWiderTruth(r)) {
+    if (unknown && s->stuck && s->truth < pixels && vplHasRoomForWiderTruth(r)) {
         *moreOut = true;
         return vplWidenTruth(r);
     }

@@ -54,6 +54,9 @@ vplResult vplFindUsefulSteps(vplRenderer* renderer, vplEdgeStep steps[VPL_EDGE_S
 // The way that needs least rays; infinitely many: there is none.
 vplResult vplFindWay(vplRenderer* renderer, const vplErrorState* state, double asked, vplWay* wayOut);
 
+// True if the truth may have VPL_WIDER_TRUTH times its pixels.
+bool vplHasRoomForWiderTruth(const vplRenderer* renderer);
+
 // Pixels at edges are traced. More of their paths, or of the truth, may prove that the error is met; else the picture is as before.
 // *moreOut: the picture is to be judged again.
 vplResult vplProveEdges(vplRenderer* renderer, const vplErrorState* state, double asked, bool* moreOut);
