@@ -12,8 +12,8 @@
 // Shorter times have no room for a truth.
 static const double LEAST_MS = 150;
 
-// The truth may take this share of the time.
-static const double SHARE_OF_TRUTH = 1.0 / 30, SHARE_OF_PATCHES = 0.3;
+// A third of this share of the time is for a look at the truth. Patches have no noise, so that all that is known of their error is from it.
+static const double SHARE_OF_TRUTH = 1.0 / 30, SHARE_FOR_PATCHES = 0.3;
 
 static vplResult judge(vplRenderer* r, double share)
 {
@@ -62,8 +62,8 @@ typedef struct Closing {
     double square; // the squared error that is foreseen
 } Closing;
 
-// The pixels, and the share of the time for their paths, that leave the least error. Passes fill the rest of the time. `left`: of the
-// squared bias of a picture with more patches, and of the time.
+// The pixels, and the share of `left` milliseconds for their paths, that leave the least error. Passes fill the rest. `bias`: the share of the
+// squared bias that more patches leave; 1: there are no more.
 static Closing findClosing(const vplRenderer* r, const vplErrorState* s, const vplEdgeStep* steps, int count,
                            double bias, double left)
 {
@@ -146,7 +146,7 @@ static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
         TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
         const vplErrorState s = vplErrorState_Of(r);
         const Closing closing = findClosing(r, &s, steps, count, 1, vplTimeLeft(r));
-        r->closingPixels = closing.pixels;
+        r->closingPixels = closing.pixels > 0 ? closing.pixels : -1; // one look is enough
         r->closingMs = closing.ms;
     }
     if (r->closingPixels > 0 && vplTimeLeft(r) - r->lastMs < r->closingMs) {
@@ -164,7 +164,7 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
     const int patches = r->plan->options.radiosity.patches, most = (int)vplMostPatches(r->runner.run.context);
     vplEdgeStep steps[VPL_EDGE_STEPS];
     int count;
-    TRY(lookForEdges(r, SHARE_OF_PATCHES, steps, &count));
+    TRY(lookForEdges(r, SHARE_FOR_PATCHES, steps, &count));
     const vplErrorState s = vplErrorState_Of(r);
     const int gather = r->plan->options.radiosity.gather;
     const double left = vplTimeLeft(r), smoother = gather > 0 ? VPL_MORE_GATHER : SMOOTHER;
