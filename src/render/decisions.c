@@ -29,12 +29,13 @@ void vplDecide(vplPlan* plan, const char* option, const char* format, ...)
 
 // ---- decisions that options and method alone make
 
-// Few rays leave noise, a large square blurs corners: with 16 rays a side of 4 leaves relmse 0.0075 and 0.0021, 8
-// leaves 0.0027 and 0.0017; with 64 rays it is 0.0019 and 0.0007 with 4, 0.0016 and 0.0014 with 8 (door-ajar and
-// room, 250 patches).
+// Few rays leave noise, a large square blurs corners. relmse of 32 rays with a side of 8 and of 4, of 128 rays with 4 and with 2: room
+// 0.0055 and 0.0019, 0.0014 and 0.0009; loft 0.0074 and 0.0048, 0.0047 and 0.0034; door-ajar 0.0041 and 0.0058, 0.0024 and 0.0045 (250
+// patches); conference-spot 0.115 and 0.080, 0.053 and 0.032; sibenik-spot 0.024 and 0.018, 0.013 and 0.009 (5,000 patches). With 16 rays 8
+// leaves less in room, door-ajar and furnished, 4 in conference-spot and sibenik-spot.
 static int squareOfRays(int rays)
 {
-    return rays < 64 ? 8 : 4;
+    return rays < 32 ? 8 : rays < 128 ? 4 : 2;
 }
 
 enum { MOST_RSM = 1024, LEAST_RSM = 16 }; // texels along a side

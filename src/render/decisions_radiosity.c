@@ -156,8 +156,8 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
 // from 0.89 to 0.19 in Sponza (55 % groups), from 0.0218 to 0.0189 in a furnished flat (21 %), in 0.7 and 1.0 times the time.
 // They leave 0.0019 by themselves: twice what patches leave around a bunny (2 % groups). More rays follow while they take about a quarter
 // of the time of the form factors: 64 instead of 16 bring relmse from 0.030 to 0.014 in Sibenik, from 0.15 to 0.063 in Conference and from
-// 0.0093 to 0.0059 in the flat, in 1.13 times the time; 256 bring 0.012, 0.048 and 0.0052 in 1.4 times.
-enum { GROUP_RAYS = 16, MOST_GROUP_RAYS = 64, GROUP_RAYS_PER_SIDE = 300, GROUP_SHARE = 7 };
+// 0.0093 to 0.0059 in the flat, in 1.13 times the time; 128, which fewer pixels share, bring 0.0093, 0.032 and 0.0060 in 1.2 times.
+enum { GROUP_RAYS = 16, MOST_GROUP_RAYS = 128, GROUP_RAYS_PER_SIDE = 500, GROUP_SHARE = 7 };
 
 // Returns the number of rays for the size of the picture.
 static int groupRays(const vplPlan* p)

@@ -128,8 +128,7 @@ vplResult vplProveEdges(vplRenderer* r, const vplErrorState* s, double asked, bo
     if (left > 0 && !noisy && vplProofOf(s, s->spread, left) < s->spent + cost) {
         return vplRefineTruth(r);
     }
-    if (left > 0 && !noisy && s->stuck && s->truth < s->spent + cost &&
-        vplHasRoomForWiderTruth(r)) {
+    if (left > 0 && !noisy && s->stuck && s->truth < s->spent + cost && vplHasRoomForWiderTruth(r)) {
         return vplWidenTruth(r);
     }
     vplLog(r->runner.run.context, VPL_LOG_INFO,
