@@ -346,6 +346,25 @@ static vplScene* cubeWithBall(vplContext* context, int levels, float radius)
     return scene;
 }
 
+// Groups are less than a seventh of the patches, but a large ball of them is an eighth of all surfaces, a small one 2 %.
+TEST(PixelsGatherTheirLightWhereGroupsAreLarge, 2)
+{
+    static const struct {
+        float radius;
+        bool gathers;
+    } cases[] = {{0.5f, true}, {0.2f, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        vplScene* scene = cubeWithBall(context, 4, cases[i].radius);
+        vplRenderOptions o = radiosityOptions(4000);
+        vplPlan* plan = NULL;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_true(plan->patchGroups > 0 && 7 * (int64_t)plan->patchGroups < plan->patches);
+        assert_true(plan->gathers == cases[i].gathers);
+        vplPlan_Destroy(plan);
+        vplScene_Destroy(scene);
+    }
+}
+
 // Thousands of triangles that are far smaller than patches share patches, even where there are fewer triangles than patches: links
 // between all of them would take hours. Triangles as large as patches stay single, and so do a few thousand small ones.
 TEST(ManySmallTrianglesAreGrouped, 2)

@@ -171,6 +171,20 @@ static int groupRays(const vplPlan* p)
     return rays;
 }
 
+// The share of all surfaces that is in groups.
+static double areaInGroups(const vplPatches* p)
+{
+    double area = 0;
+    for (int i = 0; i < p->groupCount; i++) {
+        area += p->areaUpTo[p->firstMember[i + 1] - 1];
+    }
+    return area / p->geometry->area;
+}
+
+// With many patches groups are few, but may still be large: 13 % of the area in Conference with 20,000 patches, where rays bring relmse
+// from 0.11 to 0.030 and energy from 0.971 to 0.986. In the furnished flat they are 4 %, and rays bring 0.0060 to 0.0074.
+static const double LARGE_GROUPS = 1.0 / 16;
+
 // Decides whether pixels gather their light, when the patches are known. A pixel of a triangle that goes through the wall of a dark room
 // would have the light of its lit part.
 static void chooseGather(const vplRunner* r, vplPlan* p)
@@ -181,11 +195,12 @@ static void chooseGather(const vplRunner* r, vplPlan* p)
     }
     const vplPatchSides* sides = arePatchesMade(p) ? r->run.results[VPL_STAGE_SIDES] : NULL;
     const bool light = p->showsPatches && vplShowsLight(p->options.output.show),
-               grouped = p->patchGroups > 0 && GROUP_SHARE * (int64_t)p->patchGroups >= p->patches,
+               many = p->patchGroups > 0 && GROUP_SHARE * (int64_t)p->patchGroups >= p->patches,
+               large = sides != NULL && areaInGroups(sides->patches) >= LARGE_GROUPS,
                dark = sides != NULL && sides->dark != NULL;
-    p->gathers = light && (grouped || dark);
+    p->gathers = light && (many || large || dark);
     o->gather = p->gathers ? groupRays(p) : 0;
-    if (p->gathers && grouped) {
+    if (p->gathers && (many || large)) {
         vplDecide(p, "gather", "%d of %d patches are groups, whose light differs more than a mean tells",
                   p->patchGroups, p->patches);
     } else if (p->gathers) {
