@@ -2,6 +2,8 @@
 // Tests of --method auto, --max-error, --budget and --quality: what is chosen, what is kept, and what is said of errors.
 #include "scenes.h"
 
+#include "render/planner/ways.h"
+
 #include <time.h>
 
 static vplRenderOptions smallOptions(void)
@@ -331,6 +333,40 @@ TEST(ARenderThatWasCancelledAnywhereEndsTheSame, 1)
         assert_true(midway == (i == 0)); // paths are their own truth
     }
     remove(savedFile());
+    vplScene_Destroy(scene);
+}
+
+// Where the error of a picture with traced edges is too uncertain, and more paths of the truth do not help, it gets more pixels, unless
+// that costs more than the picture.
+TEST(AnUncertainTruthBesideEdgesGetsMorePixels, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/loft.json");
+    vplRenderOptions o = smallOptions();
+    o.output.width = 120;
+    o.output.height = 72;
+    o.method = VPL_METHOD_KELLER;
+    o.stop.maxError = 1e-3;
+    for (int i = 0; i < 2; i++) {
+        vplRenderer* r;
+        bool more, done;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        assert_int_equal(vplJudge(r, 1e-3, false, INFINITY), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_TraceEdges(r, 50, 32), VPL_SUCCESS);
+        const int before = vplTruth_CountPixels(r->truth);
+        vplErrorState s = vplErrorState_Of(r);
+        s.stuck = true;
+        s.square = 0;
+        s.spread = r->judged.spread = 1e3;
+        s.spent = i == 0 ? 2 * s.truth : 0;
+        s.path = 0;
+        assert_int_equal(vplProveEdges(r, &s, 0.1, &more), VPL_SUCCESS);
+        assert_true(more);
+        assert_true((vplTruth_CountPixels(r->truth) > 2 * before) == (i == 0));
+        assert_true((r->edges != NULL) == (i == 0));
+        assert_int_equal(r->edgeTries, i);
+        vplRenderer_Destroy(r);
+    }
     vplScene_Destroy(scene);
 }
 
