@@ -60,4 +60,8 @@ refuses RadiosityRefusesShortTimes 2 "radiosity makes patches of all" "$vpl" ren
 refuses GroupsOfTrianglesRefuseShortTimes 2 "radiosity makes patches of all 2006 triangles, which takes about 0.008 s" "$vpl" render \
     "$scratch/many.obj" $wee --method radiosity --budget 7 -o "$out/never.png"
 succeeds ThePlannerDoesNotRefuseItsOwnPatches "$vpl" render "$scratch/many.obj" $wee --budget 7 -o "$out/g.pfm"
+"$vpl" render "$closed" $wee --budget 1000 --explain --dry-run >"$scratch/told" 2>&1
+check APlanForATimeSaysThatPatchesMayFollow grep -q "patches follow if there is time" "$scratch/told"
+"$vpl" render examples/scenes/loft.json $wee --budget 1000 --explain --dry-run >"$scratch/told" 2>&1
+check OthersDoNotSaySo grep -q "virtual lights with shadows leave the least error" "$scratch/told"
 rm -f "$out/g.pfm" "$out/h.pfm" "$out/e.pfm" "$out/g.json" "$out/plan.json"

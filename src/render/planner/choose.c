@@ -6,6 +6,8 @@
 #include "render/planner/patch_plan.h"
 #include "render/planner/planner.h"
 
+#include <math.h>
+
 // The error that a render without goals is made for.
 static const double USUAL_ERROR = 0.05;
 
@@ -118,6 +120,15 @@ static void sampleLamps(vplPlan* p)
               "area lights light each pixel by rays: sharing their virtual lights blurs shadows");
 }
 
+// True if a time is given without an error, and patches suit the scene (time_plan.c).
+static bool patchesMayFollow(const vplRunner* r, const vplPlan* p)
+{
+    const vplStopOptions* stop = &p->options.stop;
+    int gather;
+    return stop->budgetMs > 0 && !(stop->maxError > 0) &&
+           vplPatchesSuitTime(r, p, &p->options, INFINITY, &gather);
+}
+
 vplResult vplChooseMethod(vplRunner* r, vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
@@ -133,7 +144,10 @@ vplResult vplChooseMethod(vplRunner* r, vplPlan* p)
     if (!chooseDirect(r, p, error) && !vplChoosePatches(r, p)) {
         const bool lamps = samplesLamps(r, o);
         if (!lamps) {
-            vplDecide(p, "method", "virtual lights with shadows leave the least error in short times");
+            vplDecide(p, "method",
+                      patchesMayFollow(r, p)
+                          ? "a coarse picture comes first; patches follow if there is time for them"
+                          : "virtual lights with shadows leave the least error in short times");
         }
         chooseLights(p, error);
         if (lamps) {
