@@ -138,7 +138,8 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
 
 // ---- after a coarse picture
 
-// Many emitters have so many rims of shadows that smooth edges take so many times as long (1,000 lamps: above 4).
+// Many emitters have so many rims of shadows that smooth edges take so many times as long, at least where all 1,000 lamps light a picture:
+// with 16 samples their direct light was not ready in 5 s, and with one it takes 1.7.
 static const double TIMES_OF_EDGES = 6;
 
 // After a coarse picture with a sample of the emitters the next has as many as 0.7 of the time is enough for. Its edges are
