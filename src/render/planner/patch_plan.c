@@ -185,8 +185,11 @@ vplRenderOptions vplAskedLikePlan(const vplRenderer* r)
 {
     vplRenderOptions o = r->asked;
     const vplRenderOptions* planned = &r->plan->options;
+    if (o.method ==
+        VPL_METHOD_AUTO) { // else rays that are decided for virtual lights would be those of emitters, too
+        o.lights.shadows = planned->lights.shadows;
+    }
     o.method = planned->method;
-    o.lights.shadows = planned->lights.shadows;
     o.lights.compensation = planned->lights.compensation;
     o.lights.emitterSamples = planned->lights.emitterSamples;
     o.particles = planned->particles;
