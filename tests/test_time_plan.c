@@ -199,6 +199,31 @@ TEST(PatchesFillTheTimeWhereTheySuit, 2)
     assert_int_equal(methodInTime(context, "examples/scenes/closed-room.json", &o), VPL_METHOD_KELLER);
 }
 
+// Patches, and rays that gather their light, are as many as the caller asks for, however much time is left.
+TEST(ATimeDoesNotChangeWhatIsAskedFor, 2)
+{
+    static const int GATHERS[] = {-1, 3};
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    for (int i = 0; i < 2; i++) {
+        vplRenderOptions o = optionsFor(10000);
+        vplRenderer* r;
+        bool done = false;
+        o.radiosity.patches = 500;
+        o.radiosity.gather = GATHERS[i];
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        while (!done) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        const vplPlan* plan = vplRenderer_GetPlan(r);
+        assert_int_equal(plan->options.method, VPL_METHOD_RADIOSITY);
+        assert_int_equal(plan->options.radiosity.patches, 500);
+        assert_int_equal(plan->options.radiosity.gather, i == 0 ? 0 : 3);
+        assert_int_equal(r->edgePixels, 0);
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+}
+
 // Paths that follow others give the bits of all at once, and are counted once.
 TEST(TracedEdgesGoOn, 2)
 {

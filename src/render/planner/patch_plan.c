@@ -51,11 +51,17 @@ static bool isPlain(const vplRunner* r, const vplPlan* p)
            p->look.reaching >= MOST_REACH;
 }
 
+bool vplMayChoosePatches(const vplRenderOptions* o)
+{
+    const int methods = vplMethodsFor(o);
+    return (methods & VPL_USE_RADIOSITY) != 0 && (methods & VPL_USE_KELLER) != 0;
+}
+
 // True if the options allow radiosity, and only a few small emitters light the scene.
 static bool canUsePatches(const vplRunner* r, const vplPlan* p, const vplRenderOptions* o)
 {
     return o->output.show == VPL_SHOW_PICTURE && o->lighting == VPL_LIGHTING_PHYSICAL &&
-           (vplMethodsFor(o) & VPL_USE_RADIOSITY) != 0 && hasFewEmitters(r, p);
+           vplMayChoosePatches(o) && hasFewEmitters(r, p);
 }
 
 // ---- a first try of patches in scenes that are not plain

@@ -6,6 +6,10 @@
 
 #include "render/plan.h"
 
+// True if the options leave the choice between radiosity and virtual lights. If options of radiosity are set, as --patches is, they stay
+// as they are.
+bool vplMayChoosePatches(const vplRenderOptions* options);
+
 // Chooses radiosity, with as many patches as are likely to be enough for the error, where that suits the scene, the picture and the
 // options. Returns true if it is chosen.
 bool vplChoosePatches(const vplRunner* runner, vplPlan* plan);

@@ -192,12 +192,13 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
 
 vplResult vplSpendTime(vplRenderer* r, bool* doneOut)
 {
+    const bool patches = r->plan->options.method == VPL_METHOD_RADIOSITY && vplMayChoosePatches(&r->asked);
     if (!vplHasTimeAlone(r) || r->asked.stop.budgetMs < LEAST_MS) {
         return VPL_SUCCESS;
     }
-    return vplFillsTimeWithPatches(r) ? spendOnPatches(r, doneOut)
-           : r->plan->progressive     ? spendOnPasses(r, doneOut)
-                                      : VPL_SUCCESS;
+    return patches                ? spendOnPatches(r, doneOut)
+           : r->plan->progressive ? spendOnPasses(r, doneOut)
+                                  : VPL_SUCCESS;
 }
 
 // Less of the time is not worth it.

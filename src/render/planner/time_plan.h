@@ -18,12 +18,6 @@ static inline bool vplHasTimeAlone(const vplRenderer* r)
     return r->asked.method == VPL_METHOD_AUTO && r->asked.stop.budgetMs > 0 && !(r->asked.stop.maxError > 0);
 }
 
-// True if, besides, the planner has chosen patches, as many as the time is enough for.
-static inline bool vplFillsTimeWithPatches(const vplRenderer* r)
-{
-    return vplHasTimeAlone(r) && r->plan != NULL && r->plan->options.method == VPL_METHOD_RADIOSITY;
-}
-
 // After a coarse picture: goes on with the plan that was asked for, or with as much of it as the time is enough for.
 vplResult vplFollowCoarse(vplRenderer* renderer, bool* doneOut);
 
