@@ -29,10 +29,14 @@ void vplDecide(vplPlan* plan, const char* option, const char* format, ...)
 
 // ---- decisions that options and method alone make
 
-// Few rays leave noise, a large square blurs corners. relmse of 32 rays with a side of 8 and of 4, of 128 rays with 4 and with 2: room
-// 0.0055 and 0.0019, 0.0014 and 0.0009; loft 0.0074 and 0.0048, 0.0047 and 0.0034; door-ajar 0.0041 and 0.0058, 0.0024 and 0.0045 (250
-// patches); conference-spot 0.115 and 0.080, 0.053 and 0.032; sibenik-spot 0.024 and 0.018, 0.013 and 0.009 (5,000 patches). With 16 rays 8
-// leaves less in room, door-ajar and furnished, 4 in conference-spot and sibenik-spot.
+// Few rays leave noise, a large square blurs corners. relmse by rays and side K of the square (room, loft and door-ajar with 250 patches, the
+// others with 5,000):
+//             room    loft    door-ajar  conference-spot  sibenik-spot
+//   32, K 8   0.0055  0.0074  0.0041     0.115            0.024
+//   32, K 4   0.0019  0.0048  0.0058     0.080            0.018
+//   128, K 4  0.0014  0.0047  0.0024     0.053            0.013
+//   128, K 2  0.0009  0.0034  0.0045     0.032            0.009
+// With 16 rays, K 8 has the smaller relmse in room, door-ajar and furnished, K 4 in conference-spot and sibenik-spot.
 static int squareOfRays(int rays)
 {
     return rays < 32 ? 8 : rays < 128 ? 4 : 2;

@@ -12,8 +12,7 @@
 #include <limits.h>
 #include <stdio.h>
 
-// Tests for options of the document, which knows neither cuts nor groups, and keeps all sides.
-static bool isDocumented(const vplRadiosityOptions* o)
+bool vplIsDocumented(const vplRadiosityOptions* o)
 {
     return o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
 }
@@ -22,7 +21,7 @@ static bool isDocumented(const vplRadiosityOptions* o)
 static void chooseCuts(vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
-    const bool documented = isDocumented(o);
+    const bool documented = vplIsDocumented(o);
     if (o->cuts == VPL_PATCH_CUTS_AUTO) {
         o->cuts = documented ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_ON;
         vplDecide(p, "patch-cuts",
@@ -37,7 +36,7 @@ static void chooseFaintSides(vplPlan* p)
     if (p->options.view != NULL) { // sides are found once for all frames, and this camera may move to others
         o->faintSides = VPL_FAINT_SIDES_KEEP;
     } else if (o->faintSides == VPL_FAINT_SIDES_AUTO) {
-        o->faintSides = isDocumented(o) ? VPL_FAINT_SIDES_KEEP : VPL_FAINT_SIDES_LEAVE;
+        o->faintSides = vplIsDocumented(o) ? VPL_FAINT_SIDES_KEEP : VPL_FAINT_SIDES_LEAVE;
     }
 }
 
@@ -90,7 +89,7 @@ static vplResult chooseGroups(vplRunner* r, vplPlan* p)
         return VPL_SUCCESS;
     }
     o->groups = VPL_PATCH_GROUPS_OFF;
-    if (isDocumented(o)) {
+    if (vplIsDocumented(o)) {
         vplDecide(p, "patch-groups", "other options ask for a patch per triangle");
         return VPL_SUCCESS;
     }

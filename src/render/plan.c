@@ -111,8 +111,7 @@ static void refuseTime(const vplRunner* r, vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const vplRadiosityOptions* o = &p->options.radiosity;
-    const bool groups =
-        o->groups != VPL_PATCH_GROUPS_OFF && o->patchSize == 0 && o->formFactors != VPL_FORM_FACTORS_INCENTRE;
+    const bool groups = o->groups != VPL_PATCH_GROUPS_OFF && !vplIsDocumented(o);
     const double sides = g->triangleCount;
     const double ms = groups ? 4e-3 * sides : sides <= VPL_ALL_PAIRS ? 1e-4 * sides * sides : sides;
     if (p->showsPatches && p->options.stop.budgetMs > 0 && ms > p->options.stop.budgetMs) {

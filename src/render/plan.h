@@ -54,6 +54,9 @@ double vplReflectiveMapFaces(const vplPlan* plan);
 
 vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 
+// True for options of Hemgren's document, which knows neither cuts nor groups, and keeps all sides.
+bool vplIsDocumented(const vplRadiosityOptions* options);
+
 // Resolves the options of radiosity. Makes the patches and their sides where these are known before the render.
 vplResult vplDecidePatches(vplRunner* runner, vplPlan* plan);
 

@@ -191,8 +191,8 @@ vplRenderOptions vplAskedLikePlan(const vplRenderer* r)
 {
     vplRenderOptions o = r->asked;
     const vplRenderOptions* planned = &r->plan->options;
-    if (o.method ==
-        VPL_METHOD_AUTO) { // else rays that are decided for virtual lights would be those of emitters, too
+    // With another method the planner decides shadows for virtual lights alone; here they would be those of emitters, too.
+    if (o.method == VPL_METHOD_AUTO) {
         o.lights.shadows = planned->lights.shadows;
     }
     o.method = planned->method;

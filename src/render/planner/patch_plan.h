@@ -34,11 +34,14 @@ bool vplChoosePatches(const vplRunner* runner, vplPlan* plan);
 bool vplMayTryPatches(const vplRunner* runner, const vplPlan* plan, const vplRenderOptions* asked,
                       double rays);
 
-// The options that were asked for: with all that the planner has chosen for virtual lights; with so many patches, and rays of a gather
-// (negative: auto); with rays that compensate the clamp. Virtual lights would have these rays anyway, and --method auto does not choose
-// radiosity where they are asked for.
+// The caller's options, with what the planner has chosen for the virtual lights of the plan.
 vplRenderOptions vplAskedLikePlan(const vplRenderer* renderer);
+
+// The caller's options for radiosity with so many patches. `gather`: rays from each pixel, negative for auto.
 vplRenderOptions vplAskedWithPatches(const vplRenderer* renderer, int patches, int gather);
+
+// The caller's options for virtual lights: with rays that compensate the clamp, which virtual lights have by default, and with which
+// --method auto does not choose radiosity.
 vplRenderOptions vplAskedOfLights(const vplRenderer* renderer);
 
 // True if patches are likely to leave less error in a given time than virtual lights: in plain scenes, and where doors hide most lights

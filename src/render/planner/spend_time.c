@@ -55,11 +55,11 @@ static double timeOfPath(const vplRenderer* r)
     return ms / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
 }
 
-// What follows if pixels at edges are traced in the last part of the time.
+// A way to spend the rest of the time: passes, and then paths through pixels at edges.
 typedef struct Closing {
-    int pixels; // 0: none
-    double ms;
-    double square; // the squared error that is foreseen
+    int pixels;    // at edges; 0: none
+    double ms;     // of their paths
+    double square; // the squared error that is foreseen for the picture
 } Closing;
 
 // The pixels, and the share of `left` milliseconds for their paths, that leave the least error. Passes fill the rest. `bias`: the share of the
@@ -89,15 +89,18 @@ static int morePaths(int paths)
     return (paths & (paths - 1)) == 0 ? paths + paths / 2 : paths / 3 * 4;
 }
 
-// Traces paths through the chosen pixels until the time is over.
-static vplResult traceEdges(vplRenderer* r)
+// Traces paths through so many pixels at edges until the time is over; 0: none.
+static vplResult traceEdges(vplRenderer* r, int pixels)
 {
     const double allowed = 0.03 * r->asked.stop.budgetMs;
     double each = 0;
     int paths = FIRST_PATHS, before = 0;
+    if (pixels == 0) {
+        return VPL_SUCCESS;
+    }
     do {
         const double start = vplClockMs();
-        TRY(vplRenderer_TraceEdges(r, r->closingPixels, paths));
+        TRY(vplRenderer_TraceEdges(r, pixels, paths));
         each = (vplClockMs() - start) / (paths - before);
         before = paths;
         paths = morePaths(paths);
@@ -122,16 +125,6 @@ static vplResult lookForEdges(vplRenderer* r, double share, vplEdgeStep steps[VP
     return vplFindUsefulSteps(r, steps, countOut);
 }
 
-// Traces edges in all of the time that is left.
-static vplResult fillWithEdges(vplRenderer* r, const vplEdgeStep* steps, int count)
-{
-    vplErrorState s = vplErrorState_Of(r);
-    s.once = true; // no pass follows
-    const Closing closing = findClosing(r, &s, steps, count, 1, vplTimeLeft(r));
-    r->closingPixels = closing.pixels;
-    return closing.pixels > 0 ? traceEdges(r) : VPL_SUCCESS;
-}
-
 // The planner looks for other plans once, when a sixth of the time is over, and for edges in the second half of it.
 static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
 {
@@ -151,7 +144,7 @@ static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
     }
     if (r->closingPixels > 0 && vplTimeLeft(r) - r->lastMs < r->closingMs) {
         *doneOut = true;
-        return traceEdges(r);
+        return traceEdges(r, r->closingPixels);
     }
     return VPL_SUCCESS;
 }
@@ -187,7 +180,7 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
         *doneOut = false;
         return vplRenderer_Replace(r, &o, false, -1);
     }
-    return fillWithEdges(r, steps, count);
+    return traceEdges(r, now.pixels);
 }
 
 vplResult vplSpendTime(vplRenderer* r, bool* doneOut)
@@ -214,5 +207,7 @@ vplResult vplSpendRest(vplRenderer* r)
         return VPL_SUCCESS;
     }
     TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
-    return fillWithEdges(r, steps, count);
+    vplErrorState s = vplErrorState_Of(r);
+    s.once = true; // no pass follows
+    return traceEdges(r, findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).pixels);
 }

@@ -14,24 +14,26 @@
 
 // ---- foreseen times
 
+// The time foreseen for a stage; 0 if the plan does not have it.
+static double timeOfStage(const vplPlan* p, vplStageId id)
+{
+    double ms = 0;
+    for (int i = 0; i < p->stageCount; i++) {
+        ms += p->stages[i].id == (int)id ? p->stages[i].ms : 0;
+    }
+    return ms;
+}
+
 double vplTimeOfFirst(const vplRenderer* r)
 {
-    double ms = r->plan->firstMs;
-    for (int i = 0; i < r->plan->stageCount; i++) {
-        const vplPlanStage* stage = &r->plan->stages[i];
-        const bool made = stage->id == VPL_STAGE_GEOMETRY && r->runner.run.results[stage->id] != NULL;
-        ms -= made ? stage->ms : 0;
-    }
+    const bool made = r->runner.run.results[VPL_STAGE_GEOMETRY] != NULL;
+    const double ms = r->plan->firstMs - (made ? timeOfStage(r->plan, VPL_STAGE_GEOMETRY) : 0);
     return r->plan->showsVirtual ? ms * r->pace : ms;
 }
 
 double vplShareOfPicture(const vplPlan* p)
 {
-    double picture = 0;
-    for (int i = 0; i < p->stageCount; i++) {
-        picture += p->stages[i].id == VPL_STAGE_PICTURE ? p->stages[i].ms : 0;
-    }
-    return p->firstMs > 0 ? picture / p->firstMs : 0;
+    return p->firstMs > 0 ? timeOfStage(p, VPL_STAGE_PICTURE) / p->firstMs : 0;
 }
 
 // A plan is not begun if this share of the time foreseen for its first picture is more than the time that is left.
@@ -57,7 +59,7 @@ enum { VERY_FEW = 60 };
 // Rays per pixel that gather the light of few groups, in a tenth of the time that light at the vertices of all triangles takes.
 enum { COARSE_GATHER = 2 };
 
-// A coarse plan takes a sample of emitters only where there are more.
+// A coarse picture is lit by a sample of the emitters if there are more than this.
 enum { FEW_EMITTERS = 16 };
 
 static int countEmitters(const vplRenderer* r)
@@ -101,7 +103,8 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->radiosity.gather = 0;
 }
 
-// True if the planner may light the picture by patches, for at most so many rays. A sample of the emitters does not tell how many there are.
+// True if the planner may light the picture by patches that cost at most so many rays. A coarse plan with a sample of the emitters does not
+// tell how many there are: then it may not.
 static bool suitsPatches(const vplRenderer* r, double rays, int* gatherOut)
 {
     return vplHasTimeAlone(r) && (r->plan->options.lights.emitterSamples == 0 || !r->coarse) &&
@@ -181,16 +184,20 @@ static vplResult refine(vplRenderer* r)
 // A first picture by patches may take this share of the time, and rays that gather their light that.
 static const double SHARE_OF_PATCHES = 0.5, SHARE_OF_GATHER = 0.25;
 
-// The first patches are planned if the rays that they are foreseen to cost fit into this share of the time, at the pace of the coarse
-// picture.
-static const double SHARE_OF_RAYS = 1;
-
 // Patches that are made already stay where their number is so near to the one that fits.
 static const double FEWER = 0.7;
 
-// Replaces the first guess by as many patches, and rays that gather their light, as the time is enough for; by virtual lights if these
-// are too few. The time of what patches exchange grows with the square of their number, that of the picture hardly.
-static vplResult fitPatches(vplRenderer* r)
+// Options of a first picture by patches. More samples per pixel follow with more patches.
+static vplRenderOptions firstPatches(const vplRenderer* r, double patches, int gather)
+{
+    vplRenderOptions o = vplAskedWithPatches(r, (int)patches, gather);
+    o.output.antialias = r->asked.output.antialias;
+    return o;
+}
+
+// Replaces a plan of VPL_FIRST_PATCHES by one of as many patches, and rays that gather their light, as the time is enough for; by
+// virtual lights if these are too few. The time of what patches exchange grows with the square of their number, that of the picture hardly.
+static vplResult fillTime(vplRenderer* r)
 {
     const vplRadiosityOptions* planned = &r->plan->options.radiosity;
     const double left = vplTimeLeft(r), drawn = vplShareOfPicture(r->plan) * r->plan->firstMs;
@@ -204,38 +211,31 @@ static vplResult fitPatches(vplRenderer* r)
     }
     const bool about = fits > FEWER * planned->patches && fits < planned->patches / FEWER;
     const double patches = about ? planned->patches : fmin(fits, vplMostPatches(r->runner.run.context));
-    vplRenderOptions o = vplAskedWithPatches(r, (int)patches, gather);
-    o.output.antialias = r->asked.output.antialias;
+    const vplRenderOptions o = firstPatches(r, patches, gather);
     TRY(vplRenderer_Plan(r, &o, false));
     vplDecide(r->plan, "method", "light that patches exchange has no noise");
     vplDecide(r->plan, "patches", "as many as the time is enough for");
     return VPL_SUCCESS;
 }
 
-// Goes on with patches.
-static vplResult tryPatches(vplRenderer* r, int gather)
-{
-    vplRenderOptions o = vplAskedWithPatches(r, VPL_FIRST_PATCHES, gather);
-    o.output.antialias = r->asked.output.antialias; // smoother edges follow with more patches
-    TRY(vplRenderer_Replace(r, &o, false, -1));
-    return fitPatches(r);
-}
-
 // Foreseen times of virtual lights are wrong by a factor of up to four.
 static void notePace(vplRenderer* r)
 {
-    if (r->plan->progressive || r->plan->showsVirtual) {
+    if (r->plan->showsVirtual) {
         r->pace = fmin(4, fmax(0.25, r->passMs / fmax(vplTimeOfFirst(r), 1)));
     }
 }
 
 vplResult vplFollowCoarse(vplRenderer* r, bool* doneOut)
 {
-    const double rate = (double)r->runner.stats.rays / fmax(1, r->passMs);
+    const double rays = vplTimeLeft(r) * (double)r->runner.stats.rays /
+                        fmax(1, r->passMs); // at the pace of the coarse picture
     int gather;
     notePace(r);
-    if (suitsPatches(r, SHARE_OF_RAYS * vplTimeLeft(r) * rate, &gather)) {
-        TRY(tryPatches(r, gather));
+    if (suitsPatches(r, rays, &gather)) {
+        const vplRenderOptions o = firstPatches(r, VPL_FIRST_PATCHES, gather);
+        TRY(vplRenderer_Replace(r, &o, false, -1));
+        TRY(fillTime(r));
     } else {
         TRY(refine(r));
     }

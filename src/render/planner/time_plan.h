@@ -5,8 +5,8 @@
 
 #include "render/renderer.h"
 
-// The time until the first picture of the plan that has not begun, in ms: as foreseen, without what planning has done already, and
-// as much longer or shorter as the last coarse picture was.
+// The time in ms that a plan, none of whose passes has begun, is foreseen to need for its first picture. The geometry does not count if
+// planning has made it; times of virtual lights are multiplied by the pace of the renderer.
 double vplTimeOfFirst(const vplRenderer* renderer);
 
 // The share of the time of the first pass that drawing the picture is foreseen to take.
@@ -32,7 +32,7 @@ bool vplStopGrowth(vplRenderer* renderer);
 // promises less error, and spends the last part of the time on paths through pixels at edges where these do.
 vplResult vplSpendTime(vplRenderer* renderer, bool* doneOut);
 
-// Where another pass would come too late: paths through pixels at edges fill the rest of the time.
+// Traces paths through pixels at edges in the time that is left, if it is too short for another pass.
 vplResult vplSpendRest(vplRenderer* renderer);
 
 #endif
