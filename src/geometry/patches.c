@@ -121,7 +121,11 @@ static int countFor(Roots* roots, double length, int rounds, int enough)
 static vplGroupLength groupParts(Roots* roots, int count, int rounds, vplGroupLength groups)
 {
     int low = 0;
-    groups.finerCount = roots->geometry->triangleCount;
+    groups.finerCount = 1; // enough if the box that jumps is the one of all triangles
+    if (countWith(roots, &groups, rounds, count) < count) {
+        low = 1;
+        groups.finerCount = roots->geometry->triangleCount;
+    }
     while (groups.finerCount - low > 1) {
         vplGroupLength fewer = groups;
         fewer.finerCount = low + (groups.finerCount - low) / 2;
@@ -221,12 +225,13 @@ static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* r
 }
 
 // Groups and cuts depend on each other: what is in a group is not cut, and what cuts add leaves fewer patches for the
-// rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight.
+// rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight. A number that was found before says
+// that it jumps over the one that is wanted, since a few large boxes hold all.
 static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* roots)
 {
     enum { ROUNDS = 8 };
     const int count = def->count;
-    int least = 1, most = VPL_MAX_PATCHES, wanted = count, best = INT_MAX, found;
+    int least = 1, most = VPL_MAX_PATCHES, wanted = count, best = INT_MAX, below = 0, above = INT_MAX, found;
     vplGroupLength nearest = {.length = 0};
     TRY(vplGroupTree_Build(scratch, roots->geometry, &roots->tree));
     if (def->size > 0) {
@@ -240,8 +245,13 @@ static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* 
             best = abs(found - count);
             nearest = length;
         }
+        if (found == below || found == above) {
+            break;
+        }
         least = found < count ? wanted + 1 : least;
         most = found > count ? wanted - 1 : most;
+        below = found < count ? found : below;
+        above = found > count ? found : above;
         const int next = wanted - (found - count);
         wanted = next >= least && next <= most ? next : least + (vplMini(most, 2 * wanted) - least) / 2;
     }

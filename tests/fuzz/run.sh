@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Fuzzes readers under ASan and UBSan: tests/fuzz/run.sh scene image, FUZZ_SECONDS each (default 600). Needs clang.
+# Fuzzes under ASan and UBSan: tests/fuzz/run.sh scene image, FUZZ_SECONDS each (default 600); an input that takes more than
+# FUZZ_TIMEOUT seconds (default 60) is reported. Needs clang.
 # Inputs that reach new code stay in build/fuzzing/NAME; what crashes or hangs is put beside them as
 # NAME-crash-*, NAME-timeout-*. Fix it, then add it to tests/fuzz/corpus/NAME, which `make test` replays.
 build=build/fuzzing
@@ -19,7 +20,7 @@ for name in "$@"; do
     mkdir -p "$build/$name"
     clang -std=gnu11 $flags -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all -Iinclude -Isrc \
         -o "$build/fuzz-$name" "tests/fuzz/${name}_fuzz.c" $build/libcli.a $build/libvpl.a $(make -s --no-print-directory libs) || exit 1
-    if "$build/fuzz-$name" -max_total_time="$seconds" -timeout=20 -malloc_limit_mb=0 -rss_limit_mb=4000 \
+    if "$build/fuzz-$name" -max_total_time="$seconds" -timeout="${FUZZ_TIMEOUT:-60}" -malloc_limit_mb=0 -rss_limit_mb=4000 \
         -max_len=4096 -print_final_stats=1 -artifact_prefix="$build/$name-" $dictionary "$build/$name" \
         "tests/fuzz/corpus/$name" >"$build/$name.log" 2>&1; then
         echo "ok $name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$name.log") inputs"

@@ -17,7 +17,8 @@ enum {
     MOST_PASSES = 16,       // each pass finds one more room behind rooms
     DARK_SAMPLES = 1 << 18, // on all surfaces of the scene; dark sides get them in proportion to their area
     MOST_DARK_PASSES = 1 << 14,
-    ROOM = 128 // dark sides are a room if they are more than one in ROOM patches; fewer are crevices
+    ROOM = 128,       // dark sides are a room if they are more than one in ROOM patches; fewer are crevices
+    LEAST_OF_ROOM = 3 // and at least so many: among few patches a crevice may be one in ROOM
 };
 
 // The distance from a sample's offset point to the two points beside it (isBroad), as a multiple of the height of the offset point
@@ -247,7 +248,8 @@ static vplResult closeDarkRooms(vplLitSearch* s)
         left = countDark(s, &lacking);
         s->spreads = left < before;
     }
-    const bool beside = s->patches->groupCount > 0 && left * (int64_t)ROOM > s->patches->patchCount;
+    const bool beside =
+        s->patches->groupCount > 0 && left >= LEAST_OF_ROOM && left * (int64_t)ROOM > s->patches->patchCount;
     s->pass = pass;
     for (int side = 0; side < sides && left > 0; side++) {
         s->open[side] = s->fromEye[side] ? 0 : s->open[side];
