@@ -4,6 +4,7 @@
 #include "render/planner/edge_steps.h"
 #include "render/planner/planner.h"
 #include "render/planner/time_plan.h"
+#include "render/planner/ways.h"
 #include "render/renderer.h"
 #include "render/show.h"
 #include "render/stages/make.h"
@@ -168,6 +169,20 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
     return result;
 }
 
+// A truth of 512 pixels may miss the few that have most of the error, and a picture would be taken whose pixels happened to be good. So
+// where the choice of pixels is most of the truth's spread, and with patches in scenes that are not plain, more pixels confirm the error
+// if their first paths cost less than this share of the picture.
+static const double CONFIRM = 0.25;
+
+static bool mustConfirm(const vplRenderer* r)
+{
+    const double pixels = (double)VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
+    const double rays = pixels * VPL_FIRST_TRUTH_PATHS * r->judged.pathRays * VPL_PATH_RAY;
+    return vplTruth_CountPixels(r->truth) <= VPL_MANY_TRUTH_PIXELS &&
+           (vplPixelsLimitTruth(r) || r->lightRays > 0) &&
+           rays < CONFIRM * ((double)r->runner.stats.rays - r->planRays) && vplHasRoomForWiderTruth(r);
+}
+
 // Errors that a first pass may reach.
 static const double EARLY_ERROR = 0.03;
 
@@ -189,7 +204,10 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
     for (bool more = ready && again; more;) {
         more = false;
         TRY(vplJudge(r, asked, decides, INFINITY));
-        if (r->error.bound <= asked) {
+        if (r->error.bound <= asked && mustConfirm(r)) {
+            TRY(vplWidenTruth(r));
+            more = true;
+        } else if (r->error.bound <= asked) {
             *doneOut = true;
         } else if (decides) {
             TRY(vplReconsider(r, asked, doneOut, &more));

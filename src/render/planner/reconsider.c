@@ -59,8 +59,12 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     return VPL_SUCCESS;
 }
 
+// Goes on with what was foreseen to be quicker when patches were tried.
 static vplResult leavePatches(vplRenderer* r, bool* doneOut)
 {
+    if (r->turn.pathSquare > 0) {
+        return vplGoOnWithPaths(r, doneOut);
+    }
     const vplRenderOptions o = vplAskedOfLights(r);
     TRY(goOnWith(r, "virtual lights", &o, doneOut));
     r->lightRays = fmax(r->lightRays, 1);
@@ -91,9 +95,12 @@ vplResult vplFitPatches(vplRenderer* r, double share)
 // most of the error is at edges, which patches have, too (loft at 2 %: 18 to 31 s instead of 10).
 static const double FAR = 2;
 
-// Goes on with patches if they may be quicker than another way, which needs `otherwise` rays. `lost`: rays of passes that are discarded.
-static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool* doneOut)
+// Goes on with patches if they may be quicker than virtual lights, which need so many rays more, and paths. `lost`: rays of passes that
+// are discarded.
+static vplResult tryPatches(vplRenderer* r, const vplErrorState* s, double lights, double paths, double lost,
+                            bool* doneOut)
 {
+    const double otherwise = fmin(lights, paths);
     const double share = VPL_SHARE_OF_PATCHES * otherwise - lost;
     const bool may = r->asked.method == VPL_METHOD_AUTO && r->lightRays == 0 && isfinite(otherwise);
     if (!may || !vplMayTryPatches(&r->runner, r->plan, &r->asked, share)) {
@@ -102,6 +109,7 @@ static vplResult tryPatches(vplRenderer* r, double otherwise, double lost, bool*
     const vplRenderOptions o = vplAskedWithPatches(r, VPL_FIRST_PATCHES, r->asked.radiosity.gather);
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
+    r->turn.pathSquare = paths < lights ? s->paths : 0;
     vplForgetTruth(r); // its pixels were chosen by a noisy picture
     return VPL_SUCCESS;
 }
@@ -150,7 +158,7 @@ vplResult vplReconsiderEarly(vplRenderer* r, double asked, bool* doneOut, bool* 
     const vplErrorState s = vplErrorState_Of(r);
     TRY(vplTryEdges(r, &s, asked, moreOut));
     const double more = s.spent * fmax(0, s.square / (asked * asked) - 1); // as if all of the error was noise
-    return *moreOut ? VPL_SUCCESS : tryPatches(r, fmin(more, s.paths / (asked * asked)), 0, doneOut);
+    return *moreOut ? VPL_SUCCESS : tryPatches(r, &s, more, s.paths / (asked * asked), 0, doneOut);
 }
 
 // Begins path tracing. Where paths need more rays than foreseen, it turns back to `way`, without the passes that are done.
@@ -208,7 +216,7 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     }
     const bool leaves = paths < way.rays || way.finer > 0, unsure = s->noise > UNSURE * s->bias;
     if (r->error.total > FAR * asked) {
-        TRY(tryPatches(r, next, s->spent, doneOut));
+        TRY(tryPatches(r, s, way.rays, paths, s->spent, doneOut));
         if (r->done == 0) {
             return VPL_SUCCESS; // another plan
         }

@@ -20,6 +20,9 @@ typedef struct vplJudgement {
 // Numbers of pixels: usually, for pictures whose error is in few pixels, and at most.
 enum { VPL_TRUTH_PIXELS = 512, VPL_MANY_TRUTH_PIXELS = 1024, VPL_MOST_TRUTH_PIXELS = 8192 };
 
+// Paths of a pixel at first.
+enum { VPL_FIRST_TRUTH_PATHS = 8 };
+
 // Chooses `count` pixels of the picture, or all if it has fewer, and traces the first paths through them. Pixels that differ much from
 // their neighbours, as at edges, are chosen with a higher probability and have a smaller weight. The run's geometry must outlive it.
 vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, int count, vplTruth** truthOut);

@@ -5,12 +5,12 @@
 
 #include <math.h>
 
-// The part of the truth's spread that is noise of its paths, about. Where it is most of it, the spread may grow with the paths
-// until the rare ones that carry much light are among them.
-static double noiseOfTruth(const vplRenderer* r)
+// The rest of the spread is noise of the truth's paths, about. Where that is most of it, the spread may grow with the paths until the
+// rare ones that carry much light are among them.
+bool vplPixelsLimitTruth(const vplRenderer* r)
 {
     const double each = 0.5 * vplTruth_Paths(r->truth), count = vplTruth_CountPixels(r->truth);
-    return r->judged.pathVariance / each / sqrt(count);
+    return r->judged.spread > 3 * (r->judged.pathVariance / each / sqrt(count));
 }
 
 // Half of the square of pixels that share lights: the square of the bias falls by half, and noise takes twice as many
@@ -50,7 +50,7 @@ vplErrorState vplErrorState_Of(const vplRenderer* r)
     s.truth = VPL_PATH_RAY * (double)r->judged.rays;
     s.truthPaths = vplTruth_Paths(r->truth);
     s.path = VPL_PATH_RAY * r->judged.pathRays;
-    s.stuck = r->judged.spread > 0.85 * r->spreadBefore && r->judged.spread > 3 * noiseOfTruth(r);
+    s.stuck = r->judged.spread > 0.85 * r->spreadBefore && vplPixelsLimitTruth(r);
     return s;
 }
 

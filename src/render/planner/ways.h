@@ -54,6 +54,9 @@ vplResult vplFindUsefulSteps(vplRenderer* renderer, vplEdgeStep steps[VPL_EDGE_S
 // The way that needs least rays; infinitely many: there is none.
 vplResult vplFindWay(vplRenderer* renderer, const vplErrorState* state, double asked, vplWay* wayOut);
 
+// True where the choice of pixels is most of the truth's spread, so that more paths through them do not help.
+bool vplPixelsLimitTruth(const vplRenderer* renderer);
+
 // True if the truth may have VPL_WIDER_TRUTH times its pixels.
 bool vplHasRoomForWiderTruth(const vplRenderer* renderer);
 
