@@ -52,6 +52,23 @@ static void renderTruth(const vplScene* scene, vplImage* halves[2])
     }
 }
 
+// A pixel differs from its right and its lower neighbour; it counts, and so do those from which it differs and the others beside those.
+// Beyond a corner a difference counts a sixteenth of its square.
+TEST(ADifferenceBeyondACornerCountsLess, 1)
+{
+    static const double WANTED[3][3] = {{12 / 16.0, 12, 12}, {12, 24, 24}, {12, 24, 12 / 16.0}};
+    vplImage* image;
+    assert_int_equal(vplImage_Create(context, 8, 8, &image), VPL_SUCCESS);
+    for (int k = 0; k < 3; k++) {
+        image->pixels[3 * (8 * 4 + 4) + k] = 2;
+    }
+    for (int i = 0; i < 9; i++) {
+        assertNear(vplContrastOfPixel(image, 3 + i % 3, 3 + i / 3), WANTED[i / 3][i % 3], 0, "contrast", i);
+    }
+    assert_true(vplContrastOfPixel(image, 2, 2) == 0 && vplContrastOfPixel(image, 0, 7) == 0);
+    vplImage_Destroy(image);
+}
+
 TEST(PixelsThatDifferMostFromTheirNeighboursAreTraced, 1)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");

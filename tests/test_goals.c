@@ -2,6 +2,7 @@
 // Tests of --method auto, --max-error, --budget and --quality: what is chosen, what is kept, and what is said of errors.
 #include "scenes.h"
 
+#include "reference/sparse_paths.h"
 #include "render/planner/ways.h"
 
 #include <time.h>
@@ -368,6 +369,77 @@ TEST(AnUncertainTruthBesideEdgesGetsMorePixels, 2)
         vplRenderer_Destroy(r);
     }
     vplScene_Destroy(scene);
+}
+
+// Half of a picture is bright and without contrast, the other dark: the truth has three times as many pixels of it, which count a third.
+TEST(BrightPixelsAreComparedMoreOften, 2)
+{
+    enum { WIDTH = 240, HEIGHT = 100, COUNT = 600 };
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    vplRenderer* r;
+    vplImage* image;
+    vplTruth* truth;
+    bool done;
+    int bright = 0, dark = 0;
+    double weights[2] = {0, 0};
+    o.output.width = WIDTH;
+    o.output.height = HEIGHT;
+    o.method = VPL_METHOD_DIRECT;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    assert_int_equal(vplImage_Create(context, WIDTH, HEIGHT, &image), VPL_SUCCESS);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+        image->pixels[i] = i / 3 % WIDTH < WIDTH / 2 ? 1 : 1e-3f;
+    }
+    assert_int_equal(vplTruth_Create(&r->runner.run, image, COUNT, &truth), VPL_SUCCESS);
+    const vplTruthState state = vplTruth_GetState(truth);
+    for (int i = 0; i < state.count; i++) {
+        const int x = state.pixels[i].x;
+        if (x < WIDTH / 2 - 2 || x > WIDTH / 2 + 2) { // not at the edge between the halves
+            bright += x < WIDTH / 2;
+            dark += x > WIDTH / 2;
+            weights[x < WIDTH / 2] += state.weights[i];
+        }
+    }
+    assert_in_range(bright, COUNT / 4 - 10, COUNT / 4 + 2);
+    assert_in_range(dark, COUNT / 12 - 5, COUNT / 12 + 2);
+    assertNear(weights[0], 0.5, 0.07, "share of the dark half", 0);
+    assertNear(weights[1], 0.5, 0.07, "share of the bright half", 1);
+    vplTruth_Destroy(truth);
+    vplImage_Destroy(image);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
+
+// Where the choice of pixels is most of what the truth does not know, three times as many confirm the error; in a room that patches
+// light, noise of the truth's paths is most of it.
+TEST(MorePixelsConfirmAnErrorBeforeItIsTaken, 2)
+{
+    static const struct {
+        const char* scene;
+        double error;
+        bool confirmed;
+    } ROWS[] = {{"garden", 0.15, true}, {"garden", 0.4, false}, {"room", 0.1, false}};
+    for (int i = 0; i < 3; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "examples/scenes/%s.json", ROWS[i].scene);
+        vplScene* scene = openScene(context, path);
+        vplRenderOptions o = smallOptions();
+        vplRenderer* r;
+        bool done = false;
+        o.output.width = 120;
+        o.output.height = 72;
+        o.stop.maxError = ROWS[i].error;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        while (!done) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        assert_true((vplTruth_CountPixels(r->truth) > 2 * VPL_TRUTH_PIXELS) == ROWS[i].confirmed);
+        assert_true(r->error.bound <= ROWS[i].error);
+        vplRenderer_Destroy(r);
+        vplScene_Destroy(scene);
+    }
 }
 
 // The mean square of the blocks' errors is that of the picture.
