@@ -170,7 +170,7 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
 }
 
 // A truth of 512 pixels may miss the few that have most of the error, and a picture would be taken whose pixels happened to be good. So
-// where the choice of pixels is most of the truth's spread, and with patches in scenes that are not plain, more pixels confirm an error of
+// where the choice of pixels is most of the truth's spread, and beside edges of patches in scenes that are not plain, more pixels confirm an error of
 // more than half of what was asked if their first paths cost less than this share of the picture.
 static const double CONFIRM = 0.25;
 
@@ -179,7 +179,7 @@ static bool mustConfirm(const vplRenderer* r, double asked)
     const double pixels = (double)VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
     const double rays = pixels * VPL_FIRST_TRUTH_PATHS * r->judged.pathRays * VPL_PATH_RAY;
     return 2 * r->error.bound > asked && vplTruth_CountPixels(r->truth) <= VPL_MANY_TRUTH_PIXELS &&
-           (vplPixelsLimitTruth(r) || r->lightRays > 0) &&
+           (vplPixelsLimitTruth(r) || (r->lightRays > 0 && r->edges != NULL)) &&
            rays < CONFIRM * ((double)r->runner.stats.rays - r->planRays) && vplHasRoomForWiderTruth(r);
 }
 
