@@ -5,47 +5,44 @@
 
 #include <vpl/image.h>
 
-// Squared differences of value c from those of the right and the lower neighbour, where there are such.
-static inline double vplContrastOf(const vplImage* image, int x, int y, size_t c)
+static inline bool vplHasPixel(const vplImage* image, int x, int y)
 {
-    const size_t width = (size_t)image->width, at = 3 * ((size_t)y * width + (size_t)x) + c;
-    const double value = (double)image->pixels[at];
-    const double dx = x + 1 < image->width ? (double)image->pixels[at + 3] - value : 0;
-    const double dy = y + 1 < image->height ? (double)image->pixels[at + 3 * width] - value : 0;
-    return dx * dx + dy * dy;
+    return x >= 0 && y >= 0 && x < image->width && y < image->height;
 }
 
-// The squared difference from a neighbour, of all three values.
+// The squared difference of two pixels, summed over red, green and blue; 0 where the picture ends.
 static inline double vplContrastBetween(const vplImage* image, int x, int y, int u, int v)
 {
     double sum = 0;
-    if (u >= 0 && v >= 0 && u < image->width && v < image->height) {
+    if (vplHasPixel(image, x, y) && vplHasPixel(image, u, v)) {
         const float* a = image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
         const float* b = image->pixels + 3 * ((size_t)v * (size_t)image->width + (size_t)u);
         for (int c = 0; c < 3; c++) {
-            const double d = (double)a[c] - (double)b[c];
-            sum += d * d;
+            const double difference = (double)a[c] - (double)b[c];
+            sum += difference * difference;
         }
     }
     return sum;
+}
+
+// From the right and the lower neighbour.
+static inline double vplContrastOf(const vplImage* image, int x, int y)
+{
+    return vplContrastBetween(image, x, y, x + 1, y) + vplContrastBetween(image, x, y, x, y + 1);
 }
 
 // A line between two pixels that meet at a corner cuts at most an eighth off a pixel whose centre is on the other side. One
 // between neighbours may cut off half: four times the error.
 static const double VPL_CONTRAST_OF_CORNER = 1 / 16.0;
 
-// The largest sum over red, green and blue: of the pixel, its left and its upper neighbour, so that both sides of an edge have it;
-// and of the pixels that meet it at a corner.
+// The largest of the pixel's contrast and those of its left and its upper neighbour, so that both sides of an edge have it; and of the
+// differences from pixels that meet it at a corner.
 static inline double vplContrastOfPixel(const vplImage* image, int x, int y)
 {
-    double largest = 0;
-    for (int i = 0; i < 3; i++) {
-        const int u = x - (i == 1), v = y - (i == 2);
-        double sum = 0;
-        for (size_t c = 0; c < 3 && u >= 0 && v >= 0; c++) {
-            sum += vplContrastOf(image, u, v, c);
-        }
-        largest = sum > largest ? sum : largest;
+    double largest = vplContrastOf(image, x, y);
+    for (int i = 0; i < 2; i++) {
+        const double beside = vplContrastOf(image, x - (i == 0), y - (i == 1));
+        largest = beside > largest ? beside : largest;
     }
     for (int i = 0; i < 4; i++) {
         const double corner = VPL_CONTRAST_OF_CORNER *

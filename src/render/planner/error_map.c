@@ -48,8 +48,8 @@ static void measureBlock(const Map* m, int column, int row, float* out)
         for (int x = column * BLOCK; x < (column + 1) * BLOCK && x < p->width; x++) {
             for (size_t c = 0; c < 3; c++, count++) {
                 noise += noiseOf(m, (size_t)y * (size_t)p->width + (size_t)x, c);
-                contrast += vplContrastOf(p, x, y, c); // most of the bias is at edges
             }
+            contrast += vplContrastOf(p, x, y); // most of the bias is at edges
         }
     }
     out[1] = (float)(noise / count);

@@ -170,8 +170,8 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
 }
 
 // A truth of 512 pixels may miss the few that have most of the error, and a picture would be taken whose pixels happened to be good. So
-// where the choice of pixels is most of the truth's spread, and beside edges of patches in scenes that are not plain, more pixels confirm an error of
-// more than half of what was asked if their first paths cost less than this share of the picture.
+// an error of more than half of what was asked is confirmed by more pixels where their choice is most of the truth's spread, and beside
+// traced edges of patches in scenes that are not plain, if their first paths cost less than this share of the picture.
 static const double CONFIRM = 0.25;
 
 static bool mustConfirm(const vplRenderer* r, double asked)
