@@ -442,6 +442,27 @@ TEST(MorePixelsConfirmAnErrorBeforeItIsTaken, 2)
     }
 }
 
+// Where hundreds of lights are asked for each sample of a pixel, a large error is reached with few samples of edges.
+TEST(EdgesUnderManyLightsHaveFewSamples, 1)
+{
+    enum { MANY = 300 };
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    for (int i = 0; i < 3; i++) {
+        vplEmitterDef emitter = vplDefaultEmitterDef();
+        vplPlan* plan;
+        o.stop.maxError = i == 2 ? 0.05 : 0.1;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->options.output.antialias, i == 0 ? 8 : i == 1 ? 2 : 16);
+        vplPlan_Destroy(plan);
+        for (int k = 0; i == 0 && k < MANY; k++) {
+            emitter.position = vplVec(0.01f * (float)k - 1.5f, 1, 0);
+            assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
+        }
+    }
+    vplScene_Destroy(scene);
+}
+
 // The mean square of the blocks' errors is that of the picture.
 TEST(BlocksShareTheError, 2)
 {

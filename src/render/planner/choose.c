@@ -44,8 +44,8 @@ static void chooseShadows(vplPlan* p)
     }
 }
 
-// Where so many emitters light each sample of a pixel, smooth edges take longer than all else (1,000 lamps at 20 %: 14 s with eight
-// samples, 8 with one).
+// Where so many emitters light each sample of a pixel, smooth edges take most of the time (1,000 lamps at 20 %: 13 s with eight
+// samples, 10 with two, 8 with one, whose edges are jagged).
 enum { MANY_EMITTERS = 256 };
 
 // In the pictures of tests/bench/planner 1000 to 4000 particles a pass make about the same error in the same time; small
@@ -66,7 +66,7 @@ static void chooseLights(vplPlan* p, double error)
     }
     if (o->output.antialias == 8 && o->stop.maxError > 0 && error >= 0.1 &&
         p->emitterCount >= MANY_EMITTERS) {
-        o->output.antialias = 1;
+        o->output.antialias = 2;
         vplDecide(p, "antialias", "many lights have many rims of shadows, where paths smooth what errs most");
     }
     if (o->output.antialias == 8 && error < 0.1 && goes) {
