@@ -52,8 +52,8 @@ static void renderTruth(const vplScene* scene, vplImage* halves[2])
     }
 }
 
-// A pixel differs from its right and its lower neighbour; it counts, and so do those from which it differs and the others beside those.
-// Beyond a corner a difference counts a sixteenth of its square.
+// One bright pixel: it, its direct neighbours, and the pixels right of the upper and below the left one have contrast, since contrast is
+// that of a pixel or of its left or upper neighbour. Other diagonal neighbours have a sixteenth of the squared difference.
 TEST(ADifferenceBeyondACornerCountsLess, 1)
 {
     static const double WANTED[3][3] = {{12 / 16.0, 12, 12}, {12, 24, 24}, {12, 24, 12 / 16.0}};

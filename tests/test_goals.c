@@ -371,7 +371,8 @@ TEST(AnUncertainTruthBesideEdgesGetsMorePixels, 2)
     vplScene_Destroy(scene);
 }
 
-// Half of a picture is bright and without contrast, the other dark: the truth has three times as many pixels of it, which count a third.
+// One half of a picture is bright, the other dark, both without contrast: the truth has three times as many pixels of the bright half, and
+// each has a third of the weight.
 TEST(BrightPixelsAreComparedMoreOften, 2)
 {
     enum { WIDTH = 240, HEIGHT = 100, COUNT = 600 };
@@ -412,8 +413,8 @@ TEST(BrightPixelsAreComparedMoreOften, 2)
     vplScene_Destroy(scene);
 }
 
-// Where the choice of pixels is most of what the truth does not know, three times as many confirm the error; in a room that patches
-// light, noise of the truth's paths is most of it.
+// Where the choice of pixels is most of what the truth does not know, about four times as many confirm the error; in a room lit by
+// patches, noise of the truth's paths is most of it.
 TEST(MorePixelsConfirmAnErrorBeforeItIsTaken, 2)
 {
     static const struct {
@@ -442,7 +443,7 @@ TEST(MorePixelsConfirmAnErrorBeforeItIsTaken, 2)
     }
 }
 
-// Where hundreds of lights are asked for each sample of a pixel, a large error is reached with few samples of edges.
+// Where hundreds of emitters light each sample of a pixel, pixels at edges have two samples if 10 % of error are allowed.
 TEST(EdgesUnderManyLightsHaveFewSamples, 1)
 {
     enum { MANY = 300 };

@@ -430,7 +430,7 @@ TEST(SealedRoomsOfGroupsAreBlack, 2, SLOW)
     static const struct {
         int tiles, patches;
     } ROWS[] = {{15, 25}, {15, 60}, {15, 400}, {15, 1000}, {15, 2500}, {9, 4000}, {9, 5500}};
-    for (int i = 0; i < 14; i++) {
+    for (int i = 0; i < 2 * (int)(sizeof ROWS / sizeof *ROWS); i++) {
         vplScene* scene = tiledRooms(context, ROWS[i / 2].tiles);
         vplRenderStats stats;
         vplRenderOptions o = radiosityOptions(ROWS[i / 2].patches);

@@ -121,7 +121,7 @@ static int countFor(Roots* roots, double length, int rounds, int enough)
 static vplGroupLength groupParts(Roots* roots, int count, int rounds, vplGroupLength groups)
 {
     int low = 0;
-    groups.finerCount = 1; // enough if the box that jumps is the one of all triangles
+    groups.finerCount = 1; // reaches the box of all triangles alone; that is enough if the number jumps there
     if (countWith(roots, &groups, rounds, count) < count) {
         low = 1;
         groups.finerCount = roots->geometry->triangleCount;
@@ -225,8 +225,8 @@ static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* r
 }
 
 // Groups and cuts depend on each other: what is in a group is not cut, and what cuts add leaves fewer patches for the
-// rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight. A number that was found before says
-// that it jumps over the one that is wanted, since a few large boxes hold all.
+// rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight. The search ends when a number is
+// found again, because the split of one large box jumps over the wanted number then.
 static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* roots)
 {
     enum { ROUNDS = 8 };

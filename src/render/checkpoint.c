@@ -51,7 +51,7 @@ static vplStateHeader describe(const vplRenderer* r, const vplByteBuffer* text)
                         .loss = {r->runner.loss.lost, r->runner.loss.all},
                         .unreviewed = r->unreviewed,
                         .spread = r->unreviewed && isfinite(r->spreadBefore) ? r->spreadBefore : -1,
-                        .spent = (double)r->runner.stats.rays - r->planRays,
+                        .spent = vplRaysOfPlan(r),
                         .turn = {r->turn.rays, r->turn.pathSquare},
                         .side = (uint64_t)r->turn.side,
                         .edges = {(uint32_t)r->edgePixels, (uint32_t)r->edgePaths},

@@ -180,6 +180,12 @@ vplResult vplFitPatches(vplRenderer* renderer, double share);
 // True if the options' count of passes or paths is reached.
 bool vplIsComplete(const vplRenderer* renderer);
 
+// Rays that the plan under way has cast so far.
+static inline double vplRaysOfPlan(const vplRenderer* r)
+{
+    return (double)r->runner.stats.rays - r->planRays;
+}
+
 // Milliseconds until the deadline.
 static inline double vplTimeLeft(const vplRenderer* r)
 {

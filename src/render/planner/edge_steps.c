@@ -110,9 +110,14 @@ vplResult vplFindEdgeSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], in
 
 // ---- tries
 
+int vplCountWiderTruth(const vplRenderer* r)
+{
+    return VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
+}
+
 bool vplHasRoomForWiderTruth(const vplRenderer* r)
 {
-    const double pixels = (double)VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
+    const int pixels = vplCountWiderTruth(r);
     return pixels <= VPL_MOST_TRUTH_PIXELS && pixels <= 0.5 * r->asked.output.width * r->asked.output.height;
 }
 

@@ -96,7 +96,7 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
 static bool isClear(const vplRenderer* r, double asked, bool plansAgain, double before)
 {
     const double goal = asked * r->judged.mean, square = r->judged.square, spread = r->judged.spread;
-    const double spent = (double)r->runner.stats.rays - r->planRays;
+    const double spent = vplRaysOfPlan(r);
     const bool large = square - 2 * spread > goal * goal || spread < 0.15 * square || spread > 0.85 * before;
     const int paths = vplTruth_Paths(r->truth), sure = plansAgain ? VPL_SURE_PATHS : 1;
     return r->error.bound <= asked || (large && paths >= sure) || paths >= MAX_TRUTH_PATHS ||
@@ -134,8 +134,7 @@ vplResult vplWidenTruth(vplRenderer* r)
     vplTruth* wider;
     const double start = vplClockMs();
     TRY(vplRenderer_Resolve(r, &image));
-    const vplResult result =
-        vplTruth_Create(&r->runner.run, image, VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth), &wider);
+    const vplResult result = vplTruth_Create(&r->runner.run, image, vplCountWiderTruth(r), &wider);
     vplImage_Destroy(image);
     TRY(result);
     vplLog(r->runner.run.context, VPL_LOG_INFO, "compares %d pixels with paths instead of %d",
@@ -176,11 +175,10 @@ static const double CONFIRM = 0.25;
 
 static bool mustConfirm(const vplRenderer* r, double asked)
 {
-    const double pixels = (double)VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
-    const double rays = pixels * VPL_FIRST_TRUTH_PATHS * r->judged.pathRays * VPL_PATH_RAY;
+    const double rays = vplCountWiderTruth(r) * VPL_FIRST_TRUTH_PATHS * r->judged.pathRays * VPL_PATH_RAY;
     return 2 * r->error.bound > asked && vplTruth_CountPixels(r->truth) <= VPL_MANY_TRUTH_PIXELS &&
            (vplPixelsLimitTruth(r) || (r->lightRays > 0 && r->edges != NULL)) &&
-           rays < CONFIRM * ((double)r->runner.stats.rays - r->planRays) && vplHasRoomForWiderTruth(r);
+           rays < CONFIRM * vplRaysOfPlan(r) && vplHasRoomForWiderTruth(r);
 }
 
 // Errors that a first pass may reach.

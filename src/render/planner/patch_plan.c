@@ -191,7 +191,7 @@ vplRenderOptions vplAskedLikePlan(const vplRenderer* r)
 {
     vplRenderOptions o = r->asked;
     const vplRenderOptions* planned = &r->plan->options;
-    // With another method the planner decides shadows for virtual lights alone; here they would be those of emitters, too.
+    // If the caller chose the method, the plan's shadows are those of virtual lights alone; as an option they would apply to emitters, too.
     if (o.method == VPL_METHOD_AUTO) {
         o.lights.shadows = planned->lights.shadows;
     }

@@ -52,14 +52,14 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
         gather = VPL_MORE_GATHER * r->plan->options.radiosity.gather;
     }
     const vplRenderOptions o = vplAskedWithPatches(r, patches, gather);
-    const double spent = (double)r->runner.stats.rays - r->planRays;
+    const double spent = vplRaysOfPlan(r);
     TRY(goOnWith(r, "more patches", &o, doneOut));
     r->coarserSquare = way->rest;
     vplCountVainPatches(r, spent);
     return VPL_SUCCESS;
 }
 
-// Goes on with what was foreseen to be quicker when patches were tried.
+// Gives patches up. Path tracing follows if it was foreseen to be quicker than virtual lights when patches were tried, else these.
 static vplResult leavePatches(vplRenderer* r, bool* doneOut)
 {
     if (r->turn.pathSquare > 0) {
@@ -95,8 +95,8 @@ vplResult vplFitPatches(vplRenderer* r, double share)
 // most of the error is at edges, which patches have, too (loft at 2 %: 18 to 31 s instead of 10).
 static const double FAR = 2;
 
-// Goes on with patches if they may be quicker than virtual lights, which need so many rays more, and paths. `lost`: rays of passes that
-// are discarded.
+// Goes on with patches if they may be quicker than both virtual lights and path tracing. `lights` and `paths`: rays that these are
+// foreseen to need. `lost`: rays of the passes so far, which are discarded.
 static vplResult tryPatches(vplRenderer* r, const vplErrorState* s, double lights, double paths, double lost,
                             bool* doneOut)
 {

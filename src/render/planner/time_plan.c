@@ -195,8 +195,8 @@ static vplRenderOptions firstPatches(const vplRenderer* r, double patches, int g
     return o;
 }
 
-// Replaces a plan of VPL_FIRST_PATCHES by one of as many patches, and rays that gather their light, as the time is enough for; by
-// virtual lights if these are too few. The time of what patches exchange grows with the square of their number, that of the picture hardly.
+// Replaces a plan of VPL_FIRST_PATCHES patches by one with as many patches and gather rays as fit into the time, or by virtual lights if
+// too few patches fit. The time of the exchange of light grows with the square of the number of patches, that of the picture hardly.
 static vplResult fillTime(vplRenderer* r)
 {
     const vplRadiosityOptions* planned = &r->plan->options.radiosity;

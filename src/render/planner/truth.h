@@ -20,7 +20,7 @@ typedef struct vplJudgement {
 // Numbers of pixels: usually, for pictures whose error is in few pixels, and at most.
 enum { VPL_TRUTH_PIXELS = 512, VPL_MANY_TRUTH_PIXELS = 1024, VPL_MOST_TRUTH_PIXELS = 8192 };
 
-// Paths of a pixel at first.
+// The number of paths through each pixel that vplTruth_Create traces.
 enum { VPL_FIRST_TRUTH_PATHS = 8 };
 
 // Chooses `count` pixels of the picture, or all if it has fewer, and traces the first paths through them. Pixels that differ much from

@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-// The rest of the spread is noise of the truth's paths, about. Where that is most of it, the spread may grow with the paths until the
-// rare ones that carry much light are among them.
+// Compares the truth's spread with the part of it that the noise of the paths causes, about. Where that part is most of it, the spread
+// may still grow when rare paths that carry much light are found.
 bool vplPixelsLimitTruth(const vplRenderer* r)
 {
     const double each = 0.5 * vplTruth_Paths(r->truth), count = vplTruth_CountPixels(r->truth);
@@ -41,7 +41,7 @@ vplErrorState vplErrorState_Of(const vplRenderer* r)
     const double pathSquare =
         r->judged.pathVariance / (mean * mean) * r->judged.pathRays * VPL_PATH_RAY * pixels;
     vplErrorState s = {.noise = noise * noise,
-                       .spent = fmax(1, (double)r->runner.stats.rays - r->planRays),
+                       .spent = fmax(1, vplRaysOfPlan(r)),
                        .paths = mean > 0 ? fmax(pathSquare, r->turn.pathSquare) : INFINITY};
     countFinerPlans(r, &s);
     s.bias = fmax(0, r->error.total * r->error.total - s.noise);

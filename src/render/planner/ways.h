@@ -57,7 +57,10 @@ vplResult vplFindWay(vplRenderer* renderer, const vplErrorState* state, double a
 // True where the choice of pixels is most of the truth's spread, so that more paths through them do not help.
 bool vplPixelsLimitTruth(const vplRenderer* renderer);
 
-// True if the truth may have VPL_WIDER_TRUTH times its pixels.
+// The number of pixels that vplWidenTruth asks for.
+int vplCountWiderTruth(const vplRenderer* renderer);
+
+// True if the truth may have so many.
 bool vplHasRoomForWiderTruth(const vplRenderer* renderer);
 
 // Pixels at edges are traced. More of their paths, or of the truth, may prove that the error is met; else the picture is as before.
