@@ -22,12 +22,11 @@ static vplResult getPicture(vplRenderer* r, bool layers, Picture* picture)
 static bool hasState(const Arguments* a, const vplRenderOptions* o, const vplPlan* plan)
 {
     const bool goesOn = o->method == VPL_METHOD_AUTO && o->output.show == VPL_SHOW_PICTURE &&
-                        (o->stop.maxError > 0 || o->stop.quality != VPL_QUALITY_NONE);
+                        (o->stop.maxError > 0 || o->stop.budgetMs > 0 || o->stop.quality != VPL_QUALITY_NONE);
     const bool state = goesOn || plan->progressive || plan->options.method == VPL_METHOD_PATH;
     if (!state && (a->checkpoint != NULL || a->resume != NULL)) {
         complain("--%s: this picture is drawn at once and has no state between passes; it has with --passes, "
-                 "--budget or "
-                 "--max-error and virtual lights, and by --method path",
+                 "--budget or --max-error and virtual lights or --method auto, and by --method path",
                  a->checkpoint != NULL ? "checkpoint" : "resume");
         return false;
     }

@@ -58,8 +58,8 @@ uint32_t vplState_PartsOf(const vplPlan* p)
 bool vplState_Exists(const vplRenderer* r)
 {
     const vplRenderOptions* o = &r->asked;
-    const bool goesOn =
-        o->method == VPL_METHOD_AUTO && o->stop.maxError > 0 && o->output.show == VPL_SHOW_PICTURE;
+    const bool goesOn = o->method == VPL_METHOD_AUTO && o->output.show == VPL_SHOW_PICTURE &&
+                        (o->stop.maxError > 0 || o->stop.budgetMs > 0);
     return goesOn || vplState_PartsOf(r->plan) != VPL_STATE_ONCE;
 }
 
