@@ -71,9 +71,8 @@ typedef enum vplShadeOutput {
 // Source: Kollig and Keller, Illumination in the Presence of Weak Singularities, MCQMC 2004.
 typedef struct vplCompensationDef {
     int rayCount; // per point, [1, VPL_MAX_NEAR_RAYS]; default 2, the fewest of vplRender without interleaving
-    // Randomly chosen virtual lights that light a hit, [1, VPL_MAX_LIGHTS]; default 16, the fewest of
-    // vplRender. The result is unbiased for any number; noise is low once each light stands for a disc of
-    // radius minDistance or less.
+    // Randomly chosen virtual lights that light a hit, [1, VPL_MAX_LIGHTS]; default 16; 16 to 32 in vplRender. The result is
+    // unbiased for any number; noise is low once each light stands for a disc of radius minDistance or less.
     int hitLights;
     uint32_t firstRay; // index of a point's first ray in its sequence, which passes continue; default 0
     uint64_t seed;     // default 0

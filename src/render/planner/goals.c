@@ -170,15 +170,18 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
 
 // A truth of 512 pixels may miss the few that have most of the error, and a picture would be taken whose pixels happened to be good. So
 // an error of more than half of what was asked is confirmed by more pixels where their choice is most of the truth's spread, and beside
-// traced edges of patches in scenes that are not plain, if their first paths cost less than this share of the picture.
-static const double CONFIRM = 0.25;
+// traced edges of patches in scenes that are not plain; and any error whose bound is this near to what was asked. Their first paths must cost
+// less than this share of the picture.
+static const double CONFIRM = 0.5, NEAR = 0.9;
 
 static bool mustConfirm(const vplRenderer* r, double asked)
 {
     const double rays = vplCountWiderTruth(r) * VPL_FIRST_TRUTH_PATHS * r->judged.pathRays * VPL_PATH_RAY;
-    return 2 * r->error.bound > asked && vplTruth_CountPixels(r->truth) <= VPL_MANY_TRUTH_PIXELS &&
-           (vplPixelsLimitTruth(r) || (r->lightRays > 0 && r->edges != NULL)) &&
-           rays < CONFIRM * vplRaysOfPlan(r) && vplHasRoomForWiderTruth(r);
+    const bool doubtful =
+        vplPixelsLimitTruth(r) || (r->lightRays > 0 && r->edges != NULL) || r->error.bound > NEAR * asked;
+    return doubtful && 2 * r->error.bound > asked &&
+           vplTruth_CountPixels(r->truth) <= VPL_MANY_TRUTH_PIXELS && rays < CONFIRM * vplRaysOfPlan(r) &&
+           vplHasRoomForWiderTruth(r);
 }
 
 // Errors that a first pass may reach.
@@ -194,7 +197,10 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
         *doneOut = *doneOut || (r->error.bound >= 0 && r->error.bound <= asked);
         return *doneOut || r->paths < 2 ? VPL_SUCCESS : vplTurnBack(r, asked, doneOut);
     }
-    const bool again = r->judgedNoise <= 0 || r->error.noise < 0.8 * r->judgedNoise || r->edges != NULL;
+    // The noise of the first passes may be estimated too low, so that it seems not to fall.
+    const bool doubled = r->done >= 4 && (r->done & (r->done - 1)) == 0;
+    const bool again =
+        r->judgedNoise <= 0 || r->error.noise < 0.8 * r->judgedNoise || doubled || r->edges != NULL;
     const bool early = r->done == 1 && asked >= EARLY_ERROR;
     const bool ready =
         !r->plan->progressive || early || (r->done >= 2 && (r->error.noise <= 0.9 * asked || r->done == 6));
