@@ -243,13 +243,13 @@ static void endWithPatches(vplContext* context, const char* file, int width, dou
 // A pass of virtual lights tells that patches are quicker.
 TEST(PatchesTakeOverWhereLightsNeedFarMore, 2, SLOW)
 {
-    endWithPatches(context, "examples/scenes/six-rooms.json", 320, 0.2, VPL_METHOD_KELLER);
+    endWithPatches(context, "examples/scenes/six-rooms.json", 320, 0.15, VPL_METHOD_KELLER);
 }
 
 // A fifth of the virtual lights reaches the picture: patches come first, and more of them follow, not virtual lights.
 TEST(PatchesComeFirstWhereDoorsHideLights, 2, SLOW)
 {
-    endWithPatches(context, "examples/scenes/flat.json", 96, 0.1, VPL_METHOD_RADIOSITY);
+    endWithPatches(context, "examples/scenes/flat.json", 128, 0.08, VPL_METHOD_RADIOSITY);
 }
 
 // Takes `steps` steps, and counts those that ended with a plan of patches, of which there was none before.

@@ -51,7 +51,7 @@ bool shareBytes(Ranks* r, uint8_t** bytes, size_t* size)
     MPI_Bcast(&length, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
     const size_t words = (size_t)(length / 8 + 1);
     uint8_t* room = calloc(words, 8);
-    if (largestNumber(r, room == NULL) != 0) {
+    if (largestNumber(r, room == NULL) != 0 || room == NULL) {
         complain("out of memory for %llu bytes of the scene", (unsigned long long)length);
         free(room);
         return false;

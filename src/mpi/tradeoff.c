@@ -132,10 +132,10 @@ static void readRuns(Tradeoff* t, const uint8_t* from, size_t size)
 static int collectRuns(void* user, Tradeoff* t)
 {
     Ranks* r = user;
-    const size_t seeds = (size_t)t->arguments->seeds, settings = (size_t)(t->settingCount / r->count + 1);
+    const size_t seeds = (size_t)t->arguments->seeds, settings = (size_t)(t->settingCount / r->count) + 1;
     const size_t most = settings * (sizeof(Record) + seeds * sizeof(RunRecord));
     uint8_t* bytes = malloc(most);
-    if (largestNumber(r, bytes == NULL) != 0) {
+    if (largestNumber(r, bytes == NULL) != 0 || bytes == NULL) {
         complain("out of memory");
         free(bytes);
         return EXIT_COULD_NOT;

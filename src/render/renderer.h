@@ -29,12 +29,12 @@ typedef struct vplErrorParts {
     double bound; // the true error is below it in nineteen of twenty pictures
 } vplErrorParts;
 
-// The way that the planner would have gone if it had not begun path tracing.
+// The way that the planner would have gone if it had not begun path tracing, or tried patches.
 typedef struct vplTurn {
-    double rays; // that it would have needed
-    // Squared relative error of path tracing times its rays: as foreseen, then as measured. While patches are tried it is 0 if virtual
-    // lights were foreseen to be quicker than paths.
-    double pathSquare;
+    // That it would have needed. While patches are tried: that paths would need which follow them, 0 if virtual lights follow.
+    double rays;
+    double
+        pathSquare; // squared relative error of path tracing times its rays: as foreseen, then as measured; 0: it was not begun
     int side; // of the square of pixels that share virtual lights; 0: there is no other way
 } vplTurn;
 

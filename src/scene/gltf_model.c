@@ -20,8 +20,8 @@ static const char* const SENTENCES[VPL_GLTF_LOSSES] = {
     [VPL_GLTF_ORTHOGRAPHIC] = "%lld cameras are orthographic, which is not supported, and left out",
     [VPL_GLTF_NO_CAMERA] = "%lld cameras and lights of nodes that are scaled to nothing are left out",
     [VPL_GLTF_UNUSED] = "%lld cameras and lights have no effect in a model that is part of a scene file",
-    [VPL_GLTF_FLAT_FRAMES] = "%lld nodes with meshes are scaled to nothing at some frames: they stand there "
-                             "as at the frame before",
+    [VPL_GLTF_FLAT_FRAMES] =
+        "%lld nodes with meshes are scaled to nothing at some frames: they stay as at the frame before",
     [VPL_GLTF_EMITS_ONE_SIDED] = "%lld double-sided materials emit light: from their front sides only",
     [VPL_GLTF_EMISSIVE_TEXTURES] = "%lld materials have emissive textures: they emit the mean of it evenly",
     [VPL_GLTF_NO_PICTURE] = "%lld textures name no PNG or JPEG picture: without them",

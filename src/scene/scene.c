@@ -179,7 +179,9 @@ vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3])
                            -VPL_MAX_MAGNITUDE_DOUBLE, VPL_MAX_MAGNITUDE_DOUBLE);
         }
     }
-    memcpy(scene->origin, origin, sizeof scene->origin);
+    for (int i = 0; i < 3; i++) {
+        scene->origin[i] = origin[i];
+    }
     vplScene_Touch(scene, true);
     return VPL_SUCCESS;
 }

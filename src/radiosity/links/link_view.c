@@ -141,9 +141,9 @@ static bool someSideDiffers(const vplJudgedPair* pair, int32_t from, int32_t to,
         packet.active = 0;
         for (int l = 0; l < VPL_RAY_PACKET; l++) {
             const int side = first + step * (l / RAYS_OF_SIDE);
-            cast[l] = side < node->count && setSideRay(&work->points[work->leafAt[node->first + side]],
-                                                       &work->points[to], (unsigned)side, l, &packet);
-            seen[l] = cast[l];
+            const bool is = side < node->count && setSideRay(&work->points[work->leafAt[node->first + side]],
+                                                             &work->points[to], (unsigned)side, l, &packet);
+            cast[l] = seen[l] = is ? 1 : 0;
         }
         pair->answer->rays += vplGeometry_Darken(work->sides->patches->geometry, &packet, 1, seen);
         for (int l = 0; l < VPL_RAY_PACKET; l += RAYS_OF_SIDE) {

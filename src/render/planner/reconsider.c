@@ -59,13 +59,16 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// Gives patches up. Path tracing follows if it was foreseen to be quicker than virtual lights when patches were tried, else these.
+// Gives patches up. Path tracing follows if it was foreseen to be quicker than virtual lights when patches were tried, else these, which
+// as many pixels share as before.
 static vplResult leavePatches(vplRenderer* r, bool* doneOut)
 {
-    if (r->turn.pathSquare > 0) {
+    if (r->turn.rays > 0) {
         return vplGoOnWithPaths(r, doneOut);
     }
-    const vplRenderOptions o = vplAskedOfLights(r);
+    vplRenderOptions o = vplAskedOfLights(r);
+    o.pipeline.interleave = r->turn.side > 0 ? r->turn.side : o.pipeline.interleave;
+    r->turn.side = 0;
     TRY(goOnWith(r, "virtual lights", &o, doneOut));
     r->lightRays = fmax(r->lightRays, 1);
     return VPL_SUCCESS;
@@ -97,8 +100,7 @@ static const double FAR = 2;
 
 // Goes on with patches if they may be quicker than both virtual lights and path tracing. `lights` and `paths`: rays that these are
 // foreseen to need. `lost`: rays of the passes so far, which are discarded.
-static vplResult tryPatches(vplRenderer* r, const vplErrorState* s, double lights, double paths, double lost,
-                            bool* doneOut)
+static vplResult tryPatches(vplRenderer* r, double lights, double paths, double lost, bool* doneOut)
 {
     const double otherwise = fmin(lights, paths);
     const double share = VPL_SHARE_OF_PATCHES * otherwise - lost;
@@ -106,10 +108,13 @@ static vplResult tryPatches(vplRenderer* r, const vplErrorState* s, double light
     if (!may || !vplMayTryPatches(&r->runner, r->plan, &r->asked, share)) {
         return VPL_SUCCESS;
     }
+    const vplPipelineOptions* pipeline = &r->plan->options.pipeline;
+    const int side = pipeline->kind == VPL_ACCUMULATE_INTERLEAVED ? pipeline->interleave : 0;
     const vplRenderOptions o = vplAskedWithPatches(r, VPL_FIRST_PATCHES, r->asked.radiosity.gather);
     TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
-    r->turn.pathSquare = paths < lights ? s->paths : 0;
+    r->turn.rays = paths < lights ? paths : 0;
+    r->turn.side = side;
     vplForgetTruth(r); // its pixels were chosen by a noisy picture
     return VPL_SUCCESS;
 }
@@ -158,7 +163,7 @@ vplResult vplReconsiderEarly(vplRenderer* r, double asked, bool* doneOut, bool* 
     const vplErrorState s = vplErrorState_Of(r);
     TRY(vplTryEdges(r, &s, asked, moreOut));
     const double more = s.spent * fmax(0, s.square / (asked * asked) - 1); // as if all of the error was noise
-    return *moreOut ? VPL_SUCCESS : tryPatches(r, &s, more, s.paths / (asked * asked), 0, doneOut);
+    return *moreOut ? VPL_SUCCESS : tryPatches(r, more, s.paths / (asked * asked), 0, doneOut);
 }
 
 // Begins path tracing. Where paths need more rays than foreseen, it turns back to `way`, without the passes that are done.
@@ -216,7 +221,7 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     }
     const bool leaves = paths < way.rays || way.finer > 0, unsure = s->noise > UNSURE * s->bias;
     if (r->error.total > FAR * asked) {
-        TRY(tryPatches(r, s, way.rays, paths, s->spent, doneOut));
+        TRY(tryPatches(r, way.rays, paths, s->spent, doneOut));
         if (r->done == 0) {
             return VPL_SUCCESS; // another plan
         }
