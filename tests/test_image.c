@@ -383,3 +383,16 @@ TEST(AColourBarShowsAllColours, 1)
     }
     vplImage_Destroy(image);
 }
+
+TEST(SizesAndFormatsThatThereAreNotAreRefused, 1)
+{
+    vplImage *image = makeImage(context, 5, 5), *none = NULL;
+    uint8_t* bytes = NULL;
+    size_t size = 0;
+    assert_int_equal(vplImage_Create(context, 0, 5, &none), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "image size is 0x5, each side must be in [1, 16384]"));
+    assert_int_equal(vplImage_Encode(image, "a.txt", NULL, &bytes, &size), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "a.txt: unknown picture format"));
+    assert_true(none == NULL && bytes == NULL && size == 0);
+    vplImage_Destroy(image);
+}

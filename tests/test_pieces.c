@@ -207,3 +207,26 @@ TEST(PiecesOfAnotherPictureDoNotFitTheRenderer, 1)
     vplRenderer_Destroy(other);
     vplScene_Destroy(scene);
 }
+
+TEST(PiecesOfAnotherDivisionAreRefused, 1)
+{
+    vplScene* scene = openScene(context, "tests/data/room.json");
+    const vplRenderOptions o = optionsOf("--method direct");
+    vplRenderer* r;
+    vplPieceGrid grid = {.count = 7}, other;
+    uint8_t* bytes = NULL;
+    size_t size = 0;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Divide(r, 0, &grid), VPL_INVALID_ARGUMENT);
+    assert_string_equal(takeMessage(), "vplRenderer_Divide: bands is 0, must be at least 1");
+    assert_int_equal(grid.count, 7);
+    assert_int_equal(vplRenderer_Divide(r, 3, &grid), VPL_SUCCESS);
+    other = grid;
+    other.rows++;
+    assert_int_equal(vplRenderer_MakePiece(r, &other, 0, &bytes, &size), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplRenderer_MakePiece(r, &grid, grid.count, &bytes, &size), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "of another division"));
+    assert_true(bytes == NULL && size == 0);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}

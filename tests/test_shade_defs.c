@@ -255,3 +255,22 @@ TEST_ALONE(ChoicesOutOfRangeAreRefused)
     expectRefusal(&s, &output, "vplShadeDef.output is 99, must be in [0, 8]");
     closeSetting(&s);
 }
+
+TEST_ALONE(NumbersOutOfRangeAndMissingPartsAreRefused)
+{
+    Setting s = openSetting();
+    const vplShadeDef def = vplDefaultShadeDef();
+    vplShadeDef batch = def, samples = def, background = def, shadow = def;
+    batch.accumulation = VPL_ACCUMULATE_BATCHED;
+    batch.batch = 0;
+    samples.samples = -1;
+    background.output = VPL_OUTPUT_BACKGROUND;
+    shadow.output = VPL_OUTPUT_SHADOW_FACTOR;
+    expectRefusal(&s, &batch, "vplShadeDef.batch is 0, must be at least 1");
+    expectRefusal(&s, &samples, "vplShadeDef.samples is -1, must be in [0, 16]");
+    expectRefusal(&s, &background, "a background needs an environment");
+    expectRefusal(&s, &shadow, "a shadow factor needs an emitter with a shadow map");
+    s.view = stageView(vplVec(1, 2, 5), WIDTH, HEIGHT + 1);
+    expectRefusal(&s, &def, "image is 45x33, must be 45x34 as the view");
+    closeSetting(&s);
+}
