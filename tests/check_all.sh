@@ -53,7 +53,10 @@ TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow -PeakBy
     -MethodsThatGoOn -KeepACopy -CancelledAnywhereEndsTheSame -BitsDependOnNeither -TrianglesHaveTheMean -EmittersChangeNoMean
     -EachOfManyLamps -PointsLieOnCompact -CentroidsInMidAir -TracedEdges -ErrorHoldsWhere -PiecesHaveTheBits -TeamsHaveTheBits
     -SealedRoomsAreBlack -PanesLet -MapsAndRaysAgree -SameAtAnySize -PassesHaveNothing -WhereLampsOutnumber -FewerLightsThan
-    -RenderThatWasSaved -TheCountHolds -TheEstimateOfLinks -ThroughASlot"
+    -RenderThatWasSaved -TheCountHolds -TheEstimateOfLinks -ThroughASlot -MapsThatWereNotNeeded -AnInfiniteClampDistanceEnd
+    -ChosenTrianglesLight -NothingIsLeftTo -TJunctionsAre -AConvexBody -AFurnaceWith -PixelOfAContrast -PixelsThatDiffer
+    -TreeAgreesWith -FurnaceIsUniform -DoublingTheEmitter -DocumentedLightsIn -ShadowOfALeaf -BackgroundFills -ServeBothDirections
+    -KeepsAllLight"
 ALSO="build/gcc-asan-ubsan/vpl-golden build/gcc-asan-ubsan/nulls"
 export VPL_GOLDEN_STEP=2
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g1 -O1" SANITIZE=address,undefined
