@@ -240,7 +240,11 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
     result = checkFile(&l);
     result = result == VPL_SUCCESS ? replan(&l) : result;
     result = result == VPL_SUCCESS ? checkRender(&l) : result;
+    const double deadline = r->deadline;
+    r->deadline =
+        INFINITY; // what was saved is made again whole, also if that takes longer than there is time
     result = result == VPL_SUCCESS ? loadState(&l) : result;
+    r->deadline = deadline;
     vplFree(context, bytes);
     if (result != VPL_SUCCESS) { // the first pass would add to it; it makes all else anew
         vplImage_Destroy(r->direct);

@@ -321,12 +321,11 @@ static vplResult addPass(vplRenderer* r)
     return result;
 }
 
-vplResult vplRenderer_RunPass(vplRenderer* r)
+static vplResult runPass(vplRenderer* r)
 {
     vplRun* run = &r->runner.run;
     run->pass = r->done;
     run->samples = vplNextPaths(r);
-    vplRenderer_ForgetEdges(r);
     if (r->plan->progressive) {
         return addPass(r);
     }
@@ -343,6 +342,14 @@ vplResult vplRenderer_RunPass(vplRenderer* r)
     vplImage_Destroy(result == VPL_SUCCESS ? r->base : image);
     r->base = result == VPL_SUCCESS ? image : r->base;
     return result;
+}
+
+vplResult vplRenderer_RunPass(vplRenderer* r)
+{
+    TRY(runPass(r));
+    vplRenderer_ForgetEdges(
+        r); // they belong to the picture of the passes before, which stays if this one is cancelled
+    return VPL_SUCCESS;
 }
 
 // Ends the last pass. Where that is cancelled, the pass stays and the next step ends it, with the same decisions.

@@ -85,9 +85,10 @@ check ResumedPatchesAreTheSame cmp "$out/a.pfm" "$out/b.pfm"
 succeeds APlanOfPatchesIsReplayed "$vpl" render "$closed" --plan "$out/plan.json" --isa scalar -o "$out/c.pfm" --quiet
 check ReplayedPatchesAreTheSame cmp "$out/a.pfm" "$out/c.pfm"
 rm "$out/patches" "$out/plan.json" "$out"/[abc].pfm
-# So are the first pictures for a time.
+# So are pictures for a time, and without any more time they stay as they are.
 succeeds AStateOfATime "$vpl" render "$closed" --size 96x54 --budget 300 --quiet -o "$out/a.pfm" --checkpoint "$out/timed"
-succeeds ATimeIsResumed "$vpl" render "$closed" --size 96x54 --budget 100 --quiet -o "$out/b.pfm" --resume "$out/timed"
+succeeds ATimeIsResumed "$vpl" render "$closed" --size 96x54 --budget 1 --quiet -o "$out/b.pfm" --resume "$out/timed"
+check WithoutMoreTimeThePictureStays cmp "$out/a.pfm" "$out/b.pfm"
 rm "$out/timed" "$out"/[ab].pfm
 for option in checkpoint resume; do
     refuses "NoStateOfOnePass_$option" 2 "--$option: this picture is drawn at once" "$vpl" render "$room" $little --method direct -o "$out/a.pfm" "--$option" "$out/state"
