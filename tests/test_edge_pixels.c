@@ -186,7 +186,8 @@ static double raysOf(const vplScene* scene, const vplRenderOptions* o, vplImage*
 }
 
 // Few pixels have most of the error; where they are traced, a few passes are enough for the others. Together they need less than
-// a third of the rays of path tracing. All rays, with the truth that proves the error, are less than half (measured: 0.33; seeds 1 to 6: 0.12 to 0.52).
+// a third of the rays of path tracing. All rays, with the truth that proves the error, are less than half (measured: 0.33; with seeds 1 to
+// 6 0.12 to 0.52).
 TEST(TracedEdgesSpareRays, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");

@@ -225,8 +225,8 @@ static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* r
 }
 
 // Groups and cuts depend on each other: what is in a group is not cut, and what cuts add leaves fewer patches for the
-// rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight. The search ends when a number is
-// found again, because the split of one large box jumps over the wanted number then.
+// rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight. The search ends when the
+// same number is found again: then the split of one large box jumps over the wanted number.
 static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* roots)
 {
     enum { ROUNDS = 8 };

@@ -241,8 +241,7 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
     result = result == VPL_SUCCESS ? replan(&l) : result;
     result = result == VPL_SUCCESS ? checkRender(&l) : result;
     const double deadline = r->deadline;
-    r->deadline =
-        INFINITY; // what was saved is made again whole, also if that takes longer than there is time
+    r->deadline = INFINITY; // the saved picture is made again whole, even if the time is over before
     result = result == VPL_SUCCESS ? loadState(&l) : result;
     r->deadline = deadline;
     vplFree(context, bytes);

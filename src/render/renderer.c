@@ -347,8 +347,7 @@ static vplResult runPass(vplRenderer* r)
 vplResult vplRenderer_RunPass(vplRenderer* r)
 {
     TRY(runPass(r));
-    vplRenderer_ForgetEdges(
-        r); // they belong to the picture of the passes before, which stays if this one is cancelled
+    vplRenderer_ForgetEdges(r); // not before: if the pass is cancelled, the picture with them stays
     return VPL_SUCCESS;
 }
 

@@ -29,13 +29,14 @@ typedef struct vplErrorParts {
     double bound; // the true error is below it in nineteen of twenty pictures
 } vplErrorParts;
 
-// The way that the planner would have gone if it had not begun path tracing, or tried patches.
+// The alternative that the planner gave up when it began path tracing or tried patches.
 typedef struct vplTurn {
-    // That it would have needed. While patches are tried: that paths would need which follow them, 0 if virtual lights follow.
+    // Rays that virtual lights would have needed instead of path tracing. While patches are tried: rays that path tracing is foreseen to
+    // need if it follows the patches; 0 if virtual lights follow.
     double rays;
-    double
-        pathSquare; // squared relative error of path tracing times its rays: as foreseen, then as measured; 0: it was not begun
-    int side; // of the square of pixels that share virtual lights; 0: there is no other way
+    // Squared relative error of path tracing times its rays: as foreseen, then as measured; 0: path tracing was not begun.
+    double pathSquare;
+    int side; // of the square of pixels that share virtual lights; 0: there is no alternative
 } vplTurn;
 
 struct vplRenderer {

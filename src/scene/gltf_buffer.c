@@ -55,12 +55,11 @@ static void decodePercents(const char* uri, char* out)
         const int high = *uri == '%' ? hexOf(uri[1]) : -1, low = high >= 0 ? hexOf(uri[2]) : -1;
         const bool code = low >= 0 && high + low > 0; // a NUL byte would end the name
         if (code) {
-            *out = (char)(unsigned char)(16 * high + low);
+            *out++ = (char)(unsigned char)(16 * high + low);
+            uri += 3;
         } else {
-            *out = *uri;
+            *out++ = *uri++;
         }
-        out++;
-        uri += code ? 3 : 1;
     }
     *out = 0;
 }

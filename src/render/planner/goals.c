@@ -170,8 +170,8 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
 
 // A truth of 512 pixels may miss the few that have most of the error, and a picture would be taken whose pixels happened to be good. So
 // an error of more than half of what was asked is confirmed by more pixels where their choice is most of the truth's spread, and beside
-// traced edges of patches in scenes that are not plain; and any error whose bound is this near to what was asked. Their first paths must cost
-// less than this share of the picture.
+// traced edges of patches in scenes that are not plain. Any error is confirmed if its bound is above NEAR times what was asked. The first
+// paths of the added pixels must cost less than CONFIRM times the rays of the picture.
 static const double CONFIRM = 0.5, NEAR = 0.9;
 
 static bool mustConfirm(const vplRenderer* r, double asked)
@@ -197,7 +197,7 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
         *doneOut = *doneOut || (r->error.bound >= 0 && r->error.bound <= asked);
         return *doneOut || r->paths < 2 ? VPL_SUCCESS : vplTurnBack(r, asked, doneOut);
     }
-    // The noise of the first passes may be estimated too low, so that it seems not to fall.
+    // The noise of the first passes may be estimated too low; later estimates then stay above 0.8 of it, although the noise falls.
     const bool doubled = r->done >= 4 && (r->done & (r->done - 1)) == 0;
     const bool again =
         r->judgedNoise <= 0 || r->error.noise < 0.8 * r->judgedNoise || doubled || r->edges != NULL;

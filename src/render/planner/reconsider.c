@@ -59,8 +59,8 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// Gives patches up. Path tracing follows if it was foreseen to be quicker than virtual lights when patches were tried, else these, which
-// as many pixels share as before.
+// Gives patches up. Path tracing follows if it was foreseen to be quicker than virtual lights when patches were tried. Otherwise virtual
+// lights follow, and as many pixels share them as before.
 static vplResult leavePatches(vplRenderer* r, bool* doneOut)
 {
     if (r->turn.rays > 0) {

@@ -118,12 +118,12 @@ static const double WORTHWHILE = 0.8, SHARE_AFTER = 0.3;
 // The time of a picture with 16 samples per pixel instead of 8.
 static const double SMOOTHER = 1.8;
 
-// If the truth's standard error is more than this share of the squared error, and the root of it more than a tenth, a few of its paths that
-// carry much light may be all of the error: tracing pixels like those would bring such light into the picture (corridor in 5 s, seed 1:
-// 72 % instead of 16).
+// The error is as good as unknown if the truth's standard error is more than UNKNOWN times the squared error, and more than the square of
+// LARGE. Then a few paths of the truth that carry much light may be all of the error, and tracing pixels like theirs would bring such light
+// into the picture (corridor in 5 s, seed 1: 72 % instead of 16).
 static const double UNKNOWN = 0.7, LARGE = 0.1;
 
-// The picture's error is judged, and steps of edges are found; none if the error is as good as unknown.
+// Judges the picture's error, and finds steps of edges; none if the error is as good as unknown.
 static vplResult lookForEdges(vplRenderer* r, double share, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut)
 {
     TRY(judge(r, share));

@@ -20,10 +20,9 @@ static double workOf(const vplPlan* plan, const vplVirtualLights* lights)
     return fmin(lights->count / classes, most) * each;
 }
 
-// A hit of a short ray is lit by few of the lights. So many are enough that the clamp distance is the radius of one light's share of all
-// surfaces; but more than 32 gain less than they cost. Without that limit, and with rays that are fewer in turn, 4,000 particles with K = 8 at
-// 320x180 take 1.57 instead of 1.27 s for 11.2 instead of 10.7 % (Conference), 1.53 instead of 1.93 for 18.7 instead of 15.0 (Sibenik), 1.03
-// instead of 0.90 for as much (furnished); 1,000 particles take 1.2 to 2.3 times as long. With 16, corners are blotchy.
+// The number of virtual lights that light a hit of a short ray. Noise is low once the clamp distance is the radius of one light's share of
+// all surfaces. More than 32 lights gain less than they cost; with 16, corners are blotchy in scenes whose clamp distance is small
+// (tests/bench/README.md, "Lights of a hit").
 enum { MIN_HIT_LIGHTS = 16, MAX_HIT_LIGHTS = 32 };
 
 static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
@@ -33,11 +32,10 @@ static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
     return (int)fmax(MIN_HIT_LIGHTS, fmin(ceil(shares), MAX_HIT_LIGHTS));
 }
 
-// One ray for every 48 lights that a pixel evaluates, so that the squared errors of both fall alike: relative
-// error squared times time is 1.4 with a ray for 16 lights, 1.0 with one for 48 (cornell-area, 2048
-// particles). The minimum is two rays, and one
-// where interleaving averages over 64 pixels or more: in the room (1280x720, K = 16, 2,000 to 8,000
-// particles) one ray takes 0.65 to 0.77 of the time of two and raises the error by a twentieth.
+// A pixel casts one short ray for every 48 lights that it evaluates, so that the squared errors of both fall alike: relative error squared
+// times time is 1.4 with a ray for 16 lights, 1.0 with one for 48 (cornell-area, 2048 particles). It casts at least two rays, and at least
+// one where interleaving averages over 64 pixels or more: in the room (1280x720, K = 16, 2,000 to 8,000 particles) one ray takes 0.65 to
+// 0.77 of the time of two and raises the error by a twentieth.
 enum { LIGHTS_PER_RAY = 48, MIN_RAYS = 2, MAX_RAYS = 4096 };
 
 static int raysOf(const vplPlan* plan, const vplVirtualLights* lights)
