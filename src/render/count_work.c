@@ -114,15 +114,12 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
     }
 }
 
-// Short rays, a fifth or so of which hit something near; see raysOf in stages/compensation_rays.c.
+// Short rays, a fifth or so of which hit something near.
 static double compensationRays(const Scale* s, double lights)
 {
-    const vplRenderOptions* o = &s->plan->options;
-    const double distance = fmax((double)o->lights.minDistance, 1e-9);
-    const double hitLights = fmax(16, fmin(s->area / (VPL_PI * distance * distance), 32));
-    const int least = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && o->pipeline.interleave >= 8 ? 1 : 2;
-    const double work = o->lights.shadows == VPL_LIGHT_SHADOWS_NONE ? lights / 32 : lights;
-    const double rays = fmax(least, ceil(work / 48));
+    const double distance = fmax((double)s->plan->options.lights.minDistance, 1e-9);
+    const double hitLights = vplLightsOfHit(s->area, distance);
+    const double rays = vplShortRaysOf(s->plan, lights);
     return s->plan->compensates ? rays * (1 + 0.3 * hitLights + 0.3 * s->emitters) : 0;
 }
 

@@ -9,15 +9,20 @@
 
 #include <math.h>
 
-// The time that a pixel spends on virtual lights, in units of a shadow ray. A light without a shadow ray
-// costs a fraction of a nanosecond.
-static double workOf(const vplPlan* plan, const vplVirtualLights* lights)
+// The number of virtual lights that a pixel evaluates.
+static double lightsPerPixel(const vplPlan* plan, const vplVirtualLights* lights)
 {
     const vplPipelineOptions* o = &plan->options.pipeline;
     const double classes = o->kind == VPL_ACCUMULATE_INTERLEAVED ? o->interleave * o->interleave : 1;
     const double most = o->kind == VPL_ACCUMULATE_LIGHTCUTS ? 2048 : INFINITY;
-    const double each = plan->options.lights.shadows == VPL_LIGHT_SHADOWS_NONE ? 1.0 / 32 : 1;
-    return fmin(lights->count / classes, most) * each;
+    return fmin(lights->count / classes, most);
+}
+
+// The time that a pixel spends on so many virtual lights, in units of a shadow ray. A light without a shadow ray
+// costs a fraction of a nanosecond.
+static double workOf(const vplPlan* plan, double lights)
+{
+    return lights * (plan->options.lights.shadows == VPL_LIGHT_SHADOWS_NONE ? 1.0 / 32 : 1);
 }
 
 // The number of virtual lights that light a hit of a short ray. Noise is low once the clamp distance is the radius of one light's share of
@@ -25,11 +30,9 @@ static double workOf(const vplPlan* plan, const vplVirtualLights* lights)
 // (tests/bench/README.md, "Lights of a hit").
 enum { MIN_HIT_LIGHTS = 16, MAX_HIT_LIGHTS = 32 };
 
-static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
+double vplLightsOfHit(double area, double distance)
 {
-    const double distance = (double)lights->minDistance;
-    const double shares = vplGeometry_Area(run->results[VPL_STAGE_GEOMETRY]) / (VPL_PI * distance * distance);
-    return (int)fmax(MIN_HIT_LIGHTS, fmin(ceil(shares), MAX_HIT_LIGHTS));
+    return fmax(MIN_HIT_LIGHTS, fmin(area / (VPL_PI * distance * distance), MAX_HIT_LIGHTS));
 }
 
 // A pixel casts one short ray for every 48 lights that it evaluates, so that the squared errors of both fall alike: relative error squared
@@ -38,7 +41,7 @@ static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
 // 0.77 of the time of two and raises the error by a twentieth.
 enum { LIGHTS_PER_RAY = 48, MIN_RAYS = 2, MAX_RAYS = 4096 };
 
-static int raysOf(const vplPlan* plan, const vplVirtualLights* lights)
+int vplShortRaysOf(const vplPlan* plan, double lights)
 {
     const vplPipelineOptions* o = &plan->options.pipeline;
     const int least = o->kind == VPL_ACCUMULATE_INTERLEAVED && o->interleave >= 8 ? 1 : MIN_RAYS;
@@ -60,8 +63,9 @@ vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights
     const float distance =
         lights->emitterLightCount > 0 ? areaLightDistance(run->results[VPL_STAGE_GEOMETRY]) : 0;
     vplCompensationDef def = vplDefaultCompensationDef();
-    def.rayCount = raysOf(plan, lights);
-    def.hitLights = hitLightsOf(run, lights);
+    def.rayCount = vplShortRaysOf(plan, lightsPerPixel(plan, lights));
+    def.hitLights = (int)ceil(
+        vplLightsOfHit(vplGeometry_Area(run->results[VPL_STAGE_GEOMETRY]), (double)lights->minDistance));
     def.seed = plan->options.seed;
     def.emitters = plan->emitters;
     def.shadows = shadows;
@@ -90,7 +94,8 @@ enum { POINT_SHARE = 40000, MIN_POINTS = 32, MAX_POINTS = 1024, POINT_RAYS = 4 }
 static int pointsToAsk(const vplPlan* plan, const vplVirtualLights* lights)
 {
     const vplOutputOptions* o = &plan->options.output;
-    const double work = (double)o->width * o->height * o->supersample * workOf(plan, lights);
+    const double work =
+        (double)o->width * o->height * o->supersample * workOf(plan, lightsPerPixel(plan, lights));
     return (int)fmin(fmax(work / POINT_SHARE, MIN_POINTS), MAX_POINTS);
 }
 
