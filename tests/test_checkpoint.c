@@ -131,6 +131,7 @@ TEST(AStateOfAnotherRenderIsRefused, 1)
     changed.stop.passes = 0;
     assertRefused(scene, &changed, VPL_INVALID_ARGUMENT, "say when it ends");
     assert_int_equal(vplRenderer_Create(scene, &changed, &r), VPL_SUCCESS);
+    assert_false(vplRenderer_HasState(r));
     assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Save(r, stateFile()), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "has no state to save"));
@@ -138,6 +139,7 @@ TEST(AStateOfAnotherRenderIsRefused, 1)
     addMaterial(scene, (vplRgb){0.25f, 0.5f, 0.75f}, 0);
     assertRefused(scene, &o, VPL_INVALID_ARGUMENT, "saved with another scene");
     assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_true(vplRenderer_HasState(r));
     assert_int_equal(vplRenderer_Save(r, stateFile()), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "before its first step"));
     assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);

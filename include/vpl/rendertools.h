@@ -39,8 +39,12 @@ vplResult vplRenderer_GetLayers(vplRenderer* renderer, vplLayers** layersOut, vp
 // vplImage_Destroy.
 vplResult vplRenderer_GetErrorMap(vplRenderer* renderer, vplImage** mapOut);
 
-// Saves the state between two steps to a file, whole or not at all, for renders of several passes and path
-// tracing; VPL_INVALID_ARGUMENT for others and before the first step. Needs memory of the file's size: up to
+// Returns true if the render has a state that can be saved: it has several passes, or traces paths, or VPL_METHOD_AUTO with
+// a time or an error may go on from a picture that is drawn at once. False for NULL.
+bool vplRenderer_HasState(const vplRenderer* renderer);
+
+// Saves the state between two steps to a file, whole or not at all. VPL_INVALID_ARGUMENT before the first step and
+// where vplRenderer_HasState is false. Needs memory of the file's size: up to
 // 60 bytes per pixel, and 96 for path-traced layers of light.
 vplResult vplRenderer_Save(vplRenderer* renderer, const char* path);
 
@@ -54,8 +58,8 @@ vplResult vplRenderer_Save(vplRenderer* renderer, const char* path);
 vplResult vplRenderer_Load(vplRenderer* renderer, const char* path, bool* doneOut);
 
 // Ends a render: gets the picture as vplRenderer_GetImage does or, if layersOut is not NULL, the layers as
-// vplRenderer_GetLayers does (imageOut may then be NULL), and logs the error that remains. statsOut may be NULL. Needs no second picture in memory where the
-// picture is no mean of passes. The renderer can only be destroyed after it.
+// vplRenderer_GetLayers does (imageOut may then be NULL), and logs the error that remains. statsOut may be NULL. Needs no
+// second picture in memory where the picture is no mean of passes. The renderer can only be destroyed after it.
 vplResult vplRenderer_Finish(vplRenderer* renderer, vplImage** imageOut, vplLayers** layersOut,
                              vplRenderStats* statsOut);
 

@@ -19,12 +19,9 @@ static vplResult getPicture(vplRenderer* r, bool layers, Picture* picture)
 // ---- the state
 
 // True if a state can be saved or loaded; complains otherwise, before anything is rendered.
-static bool hasState(const Arguments* a, const vplRenderOptions* o, const vplPlan* plan)
+static bool hasState(const Arguments* a, const vplRenderer* r)
 {
-    const bool goesOn = o->method == VPL_METHOD_AUTO && o->output.show == VPL_SHOW_PICTURE &&
-                        (o->stop.maxError > 0 || o->stop.budgetMs > 0 || o->stop.quality != VPL_QUALITY_NONE);
-    const bool state = goesOn || plan->progressive || plan->options.method == VPL_METHOD_PATH;
-    if (!state && (a->checkpoint != NULL || a->resume != NULL)) {
+    if (!vplRenderer_HasState(r) && (a->checkpoint != NULL || a->resume != NULL)) {
         complain("--%s: this picture is drawn at once and has no state between passes; it has with --passes, "
                  "--budget or --max-error and virtual lights or --method auto, and by --method path",
                  a->checkpoint != NULL ? "checkpoint" : "resume");
@@ -100,7 +97,7 @@ int renderPicture(const Arguments* a, const vplScene* scene, const vplRenderOpti
         return EXIT_DONE;
     }
     sayDecisions(a, vplRenderer_GetPlan(r));
-    if (!hasState(a, options, vplRenderer_GetPlan(r))) {
+    if (!hasState(a, r)) {
         code = EXIT_USAGE;
     } else if (a->resume != NULL) {
         code = exitCode(vplRenderer_Load(r, a->resume, &done), true);

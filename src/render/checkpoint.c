@@ -94,7 +94,7 @@ vplResult vplRenderer_Save(vplRenderer* r, const char* path)
 {
     REQUIRE(vplRenderer_ContextOf(r), r, path);
     vplContext* context = r->runner.run.context;
-    if (!vplState_Exists(r)) {
+    if (!vplRenderer_HasState(r)) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "a render that is drawn at once has no state to save; renders of several passes have "
                        "one (--passes, --budget, --max-error), and path tracing");

@@ -115,7 +115,7 @@ static vplResult checkRender(const Loading* l)
     vplFree(r->runner.run.context, text.bytes);
     TRY(result);
     const uint32_t parts = vplState_PartsOf(r->plan);
-    if (!vplState_Exists(r) || h->parts != (h->passes > 0 ? parts : 0)) {
+    if (!vplRenderer_HasState(r) || h->parts != (h->passes > 0 ? parts : 0)) {
         return vplFail(
             context, VPL_INVALID_ARGUMENT,
             "%s: saved by a render of several passes, and this one is drawn at once: say when it ends, by "

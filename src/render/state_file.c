@@ -55,8 +55,11 @@ uint32_t vplState_PartsOf(const vplPlan* p)
     return (paths ? VPL_STATE_PATHS : VPL_STATE_PASSES) | (vplPassesSplitLight(p) ? VPL_STATE_DIRECT : 0);
 }
 
-bool vplState_Exists(const vplRenderer* r)
+bool vplRenderer_HasState(const vplRenderer* r)
 {
+    if (r == NULL) {
+        return false;
+    }
     const vplRenderOptions* o = &r->asked;
     const bool goesOn = o->method == VPL_METHOD_AUTO && o->output.show == VPL_SHOW_PICTURE &&
                         (o->stop.maxError > 0 || o->stop.budgetMs > 0);

@@ -45,9 +45,6 @@ size_t vplState_Size(const vplStateHeader* header);
 // The arrays of a plan's renderer after its first pass. VPL_STATE_ONCE: there are none, the picture is drawn at once.
 uint32_t vplState_PartsOf(const vplPlan* plan);
 
-// True if the renderer can be saved: it has passes, or paths, or --method auto may go on from a picture that is drawn at once.
-bool vplState_Exists(const vplRenderer* renderer);
-
 // How many path tracers these arrays are of: one for the picture, and one for its direct light.
 static inline int vplState_CountTracers(uint32_t parts)
 {
