@@ -483,10 +483,11 @@ static void compareEnergies(vplContext* context, int first, int end)
 {
     for (int which = first; which < end; which++) {
         vplScene* scene = energyScene(context, which);
-        vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 512);
+        const bool hidden = which == 0 || which == 5; // few paths find the light behind a door
+        vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, hidden ? 512 : 128);
         compareEnergy(scene, truth, 2000, false, which);
         compareEnergy(scene, truth, 2000, true, which);
-        if (which == 0 || which == 5) {
+        if (hidden) {
             compareEnergy(scene, truth, 8000, false, which);
             compareEnergy(scene, truth, 8000, true, which);
         }
