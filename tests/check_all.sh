@@ -71,7 +71,7 @@ unset VPL_GOLDEN_STEP
 TESTS=$ARITHMETIC
 ALSO=build/clang-release/vpl-golden
 if command -v clang >/dev/null 2>&1; then
-    run clang-release CC=clang
+    run clang-release CC=clang CFLAGS=
 fi
 if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-static >/dev/null 2>&1 &&
     [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
@@ -79,7 +79,7 @@ if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-s
     TESTS="$ARITHMETIC -MapsAndRaysAgree"
     ALSO=build/aarch64/vpl-golden
     RUNNER="qemu-aarch64-static -E LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu"
-    run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 EXR=0 LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
+    run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 EXR=0 CFLAGS= LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
 else
     ALSO=build/gcc-plain/vpl-golden
     run gcc-plain CC=gcc MODE=debug OPENMP=0 EXR=0
