@@ -14,7 +14,6 @@ static inline vplRenderOptions plainOptions(void)
     o.output.antialias = 1;
     o.particles.count = 10;
     o.particles.reflectivity = 0.5;
-    o.pipeline.interleave = 4;
     return o;
 }
 

@@ -70,9 +70,10 @@ void vplDecidePipeline(vplPlan* p)
         const bool shared = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED;
         if (p->showsVirtual) {
             vplDecide(p, "pipeline",
-                      ssvp     ? "neighbours share lights, as the document has it"
-                      : shared ? "neighbours share so many lights"
-                               : "one G-buffer, then all lights per tile");
+                      ssvp                         ? "neighbours share lights, as the document has it"
+                      : !shared                    ? "one G-buffer, then all lights per tile"
+                      : o->pipeline.interleave > 1 ? "--interleave says that neighbours share lights"
+                                                   : "neighbours share so many lights");
         }
     }
     const bool open = p->showsPatches && o->radiosity.gather < 0; // patches decide

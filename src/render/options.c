@@ -88,8 +88,10 @@ const vplOption* vplFindOption(const char* name)
 
 vplAccumulation vplUsualPipeline(const vplRenderOptions* o)
 {
-    const bool shared =
+    const bool particles = o->method == VPL_METHOD_KELLER || o->method == VPL_METHOD_INSTANT_RADIOSITY;
+    const bool many =
         o->method == VPL_METHOD_KELLER && (o->particles.count < 0 || o->particles.count >= 1000);
+    const bool shared = many || (particles && o->pipeline.interleave > 1);
     const bool gathers = o->method == VPL_METHOD_RADIOSITY && o->radiosity.gather > 0;
     return shared || gathers || o->method == VPL_METHOD_SSVP ? VPL_ACCUMULATE_INTERLEAVED
                                                              : VPL_ACCUMULATE_DEFERRED;

@@ -153,7 +153,7 @@ tiny="--size 8x8 --shadow-map 8"
 unused "--clusters has no effect with --method keller" render "$room" $tiny --clusters 8
 unused "--particles has no effect with --method direct" render "$room" $tiny --particles=3 --method direct
 unused "--batch has no effect with --pipeline interleaved" render "$room" $tiny --batch 3
-unused "--interleave has no effect with --pipeline deferred" render "$room" $tiny --particles 10 --interleave 3
+unused "--interleave has no effect with --pipeline deferred" render "$room" $tiny --particles 10 --interleave 3 --pipeline deferred
 unused "--interleave has no effect with --pipeline lightcuts" render "$room" $tiny --pipeline lightcuts --interleave 3 --interleave 4
 unused "--exposure has no effect on $out/u.pfm, which holds linear values" render "$room" $tiny --exposure auto
 unused "--tonemap has no effect on $out/u.pfm, which holds linear values" render "$room" $tiny --tonemap=usual
@@ -161,6 +161,9 @@ unused "--tonemap has no effect on $out/u.pfm, which holds linear values" render
 equals NoBiasWarns 1 "$(grep -c "^vpl: warning: --bias 0: surfaces lie in their own shadow" "$scratch/stderr")"
 succeeds NoEffectIsQuiet "$vpl" render "$room" $tiny --clusters 8 --quiet -o "$out/u.pfm"
 succeeds EffectOfTheUsualPipeline "$vpl" render "$room" --size 8x8 --method ssvp --interleave 2 --rsm-size 32 -o "$out/u.pfm"
+succeeds InterleaveIsAPipeline "$vpl" render "$room" $tiny --method keller --particles 9 --interleave 2 -o "$out/u.pfm" --plan-out "$out/u.json"
+check InterleaveIsInThePlan grep -q '"pipeline": "interleaved"' "$out/u.json"
+rm "$out/u.json"
 succeeds DefaultsDoNotWarn "$vpl" render "$room" $tiny -o "$out/u.pfm"
 "$vpl" info "$room" --method keller --spp 3 >"$scratch/stdout" 2>"$scratch/stderr"
 equals NoEffectInInfo "vpl: warning: --spp has no effect with --method keller" "$(cat "$scratch/stderr")"
