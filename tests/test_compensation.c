@@ -358,7 +358,7 @@ TEST(EveryKindOfLightIsGivenBack, 2, SLOW)
         o.lights.shadows = cases[i].shadows;
         o.lights.mapSize = 48;
         o.pipeline.kind = cases[i].accumulation;
-        o.pipeline.interleave = cases[i].accumulation == VPL_ACCUMULATE_INTERLEAVED ? 4 : 1;
+        o.pipeline.interleave = 4;
         o.lights.compensation = VPL_COMPENSATION_RAYS;
         o.particles.sampler = VPL_SAMPLER_HALTON;
         assertNear(meanOf(scene, &o, NULL), truth, 0.01 * truth, cases[i].scene, i);

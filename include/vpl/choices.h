@@ -52,7 +52,7 @@ typedef enum vplAccumulation {
     VPL_ACCUMULATE_DEFERRED,      // one pass for a G-buffer, then all lights per tile
     VPL_ACCUMULATE_INTERLEAVED,   // every K^2-th light per pixel, then means of neighbours on one surface
     VPL_ACCUMULATE_LIGHTCUTS,     // clusters of a light tree, as fine as an error bound requires
-    VPL_ACCUMULATE_USUAL          // vplRender chooses by the method
+    VPL_ACCUMULATE_USUAL          // vplRender chooses by the method, particles and interleave
 } vplAccumulation;
 
 typedef enum vplFormFactorKind {

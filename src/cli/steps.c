@@ -18,7 +18,7 @@ static vplResult getPicture(vplRenderer* r, bool layers, Picture* picture)
 
 // ---- the state
 
-// True if a state can be saved or loaded; complains otherwise, before anything is rendered.
+// Returns false and complains, before anything is rendered, if a state is to be saved or loaded and the render has none.
 static bool hasState(const Arguments* a, const vplRenderer* r)
 {
     if (!vplRenderer_HasState(r) && (a->checkpoint != NULL || a->resume != NULL)) {
