@@ -32,12 +32,22 @@ fails() {
     touch build/check-all-failed
 }
 
+# suites_of NAMES...: the suites whose names are given, and those of tests that contain a name; what begins with - is left out.
+suites_of() {
+    for word in "$@"; do
+        case $word in
+        -*) ;;
+        *) { ls "tests/test_$word.c" || grep -lE "^TEST[A-Z_]*\([A-Za-z]*$word" tests/test_*.c; } 2>/dev/null ;;
+        esac
+    done | sed 's|.*/test_\(.*\)\.c|\1|' | sort -u | tr '\n' ' '
+}
+
 # run NAME [MAKE VARIABLES...]: builds one configuration while those before are tested, then tests it in the background.
 run() {
     name=$1
     shift
-    if make -j"$jobs" --no-print-directory BUILD="build/$name" "$@" "build/$name/vpl-tests" $ALSO \
-        >"build/$name.log" 2>&1; then
+    if make -j"$jobs" --no-print-directory BUILD="build/$name" PACKED=1 SUITES="$(suites_of $TESTS)" "$@" \
+        "build/$name/vpl-tests" $ALSO >"build/$name.log" 2>&1; then
         check "$name" &
     else
         fails "$name"
@@ -65,24 +75,26 @@ if command -v clang >/dev/null 2>&1; then
     # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor. Golden pictures have one thread.
     TESTS="Threads Everywhere SameBits ChoicesDoNotDepend AHostsOwnScheduler Cancel StepsGive -CancelledAnywhere -ACancelledPass
         -PredictedTime -KeepACopy -DependOnNeither"
-    run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g1 -O1 -DVPL_TEST_PTHREADS"
+    run clang-tsan CC=clang OPENMP=0 WIDE= SANITIZE=thread CFLAGS="-g1 -O1 -DVPL_TEST_PTHREADS"
+fi
+# The slowest of the others first: it is emulated while the last one is built.
+TESTS="$ARITHMETIC -MapsAndRaysAgree"
+if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-static >/dev/null 2>&1 &&
+    [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
+    export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu VPL_GOLDEN_STEP=3
+    ALSO=build/aarch64/vpl-golden
+    RUNNER="qemu-aarch64-static -E LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu"
+    run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 EXR=0 CFLAGS= LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
+    RUNNER=
+else
+    ALSO=build/gcc-plain/vpl-golden
+    run gcc-plain CC=gcc MODE=debug OPENMP=0 EXR=0
 fi
 unset VPL_GOLDEN_STEP
 TESTS=$ARITHMETIC
 ALSO=build/clang-release/vpl-golden
 if command -v clang >/dev/null 2>&1; then
     run clang-release CC=clang CFLAGS=
-fi
-if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-static >/dev/null 2>&1 &&
-    [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
-    export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu VPL_GOLDEN_STEP=3
-    TESTS="$ARITHMETIC -MapsAndRaysAgree"
-    ALSO=build/aarch64/vpl-golden
-    RUNNER="qemu-aarch64-static -E LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu"
-    run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 EXR=0 CFLAGS= LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
-else
-    ALSO=build/gcc-plain/vpl-golden
-    run gcc-plain CC=gcc MODE=debug OPENMP=0 EXR=0
 fi
 wait
 [ ! -e build/check-all-failed ]

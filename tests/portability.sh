@@ -149,8 +149,13 @@ run() {
     shift 4
     [ -z "$VPL_FILES_ONLY" ] || tests=$FILES
     measure
-    if ! make -j"$jobs" --no-print-directory BUILD="$build" "$@" "$build/libvpl.a" "$build/vpl" "$build/vpl-golden" \
-        "$build/vpl-tests" >"$here/$target.log" 2>&1; then
+    suites=
+    case $tests in
+    -*) ;;
+    *) suites=$tests ;;
+    esac
+    if ! make -j"$jobs" --no-print-directory BUILD="$build" PACKED=1 SUITES="$suites" "$@" "$build/libvpl.a" "$build/vpl" \
+        "$build/vpl-golden" "$build/vpl-tests" >"$here/$target.log" 2>&1; then
         echo "$target: not built, see build/portability/$target.log"
         grep -m 5 -E 'rror|undefined' "$here/$target.log"
         failed=$((failed + 1))
@@ -167,7 +172,7 @@ run() {
 # musl has no OpenEXR and its gcc no OpenMP.
 musl() {
     { install musl-tools && from_sources musl musl-gcc; } || { skip musl "it needs musl-tools and the sources of jansson and cmocka"; return; }
-    run musl "" "" "$WHOLE" CC=musl-gcc OPENMP=0 EXR=0 CFLAGS="-O1 -isystem $here/musl-root/include -isystem $here/musl-root/include/stb" \
+    run musl "" "" "$WHOLE" CC=musl-gcc OPENMP=0 EXR=0 WIDE= CFLAGS="-O1 -isystem $here/musl-root/include -isystem $here/musl-root/include/stb" \
         LDLIBS="-L$here/musl-root/lib -ljansson -lm"
 }
 

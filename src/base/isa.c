@@ -13,7 +13,7 @@ bool vplHasIsa(vplIsa isa)
     case VPL_ISA_SCALAR:
     case VPL_ISA_SSE2:
         return true;
-#if defined(__x86_64__) && !defined(_WIN32)
+#ifdef VPL_WIDE
     case VPL_ISA_AVX2:
         return __builtin_cpu_supports("avx2");
     case VPL_ISA_AVX512: // the subset common to AVX-512 servers and Zen 4

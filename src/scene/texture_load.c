@@ -44,11 +44,11 @@ static vplResult addGrey(vplScene* scene, const vplTextureFile* file, vplTexture
 static vplResult addLinear(vplScene* scene, const vplTextureFile* file, vplTextureDef def,
                            const uint8_t* bytes, size_t size, int* indexOut)
 {
-    vplDecodeFcn* decode = endsWith(file->path, ".hdr")   ? vplDecodeHdr
-                           : endsWith(file->path, ".pfm") ? vplDecodePfm
-                                                          : vplDecodeExr;
+    vplDecodeFcn* decodeFloats = endsWith(file->path, ".hdr")   ? vplDecodeHdr
+                                 : endsWith(file->path, ".pfm") ? vplDecodePfm
+                                                                : vplDecodeExr;
     vplImage* image;
-    const vplResult decoded = decode(scene->context, file->path, bytes, size, &image);
+    const vplResult decoded = decodeFloats(scene->context, file->path, bytes, size, &image);
     if (decoded == VPL_OUT_OF_MEMORY) {
         return decoded;
     }

@@ -132,7 +132,7 @@ static const vplStrategy* chooseStrategy(const vplShadeDef* def, const vplGeomet
     if (def->output == VPL_OUTPUT_BACKGROUND) {
         return &vplBackgroundStrategy;
     }
-    if (!vplShowsLight(def->output)) {
+    if (!vplIsLight(def->output)) {
         return &vplShowStrategy;
     }
     // Cut-outs are put into a G-buffer; multipass and batched pictures have the same bits as deferred ones.

@@ -128,7 +128,7 @@ extern const vplStrategy vplPassesStrategy, vplDeferredStrategy, vplShowStrategy
 extern const vplStrategy vplInterleavedStrategy, vplLightcutsStrategy;
 
 // Returns true for pictures that show light, false for stages on the way to it.
-static inline bool vplShowsLight(vplShadeOutput output)
+static inline bool vplIsLight(vplShadeOutput output)
 {
     return output == VPL_OUTPUT_RADIANCE || output == VPL_OUTPUT_GATHER || output == VPL_OUTPUT_DENOISED;
 }
