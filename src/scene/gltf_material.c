@@ -73,13 +73,13 @@ static vplResult readEmission(vplGltf* g, const vplJson* material, const vplJson
 {
     const vplJson strong = extensionOf(extensions, "KHR_materials_emissive_strength");
     double colour[3] = {0, 0, 0}, strength = 1;
-    TRY(readColour(material, "emissiveFactor", 3, (double)VPL_MAX_MAGNITUDE, colour));
+    TRY(readColour(material, "emissiveFactor", 3, VPL_MAX_MAGNITUDE_DOUBLE, colour));
     if (strong.value != NULL) {
         const vplJson member = vplJson_Member(&strong, "emissiveStrength");
         TRY(vplJson_RequireObject(&strong));
         TRY(vplJson_ReadNumber(&strong, "emissiveStrength", &strength));
-        if (!(strength >= 0 && strength <= (double)VPL_MAX_MAGNITUDE)) {
-            return vplJson_Fail(&member, "is %g, must be in [0, %g]", strength, (double)VPL_MAX_MAGNITUDE);
+        if (!(strength >= 0 && strength <= VPL_MAX_MAGNITUDE_DOUBLE)) {
+            return vplJson_Fail(&member, "is %g, must be in [0, %g]", strength, VPL_MAX_MAGNITUDE_DOUBLE);
         }
     }
     double most = 0, mean[3] = {1, 1, 1};
@@ -90,10 +90,10 @@ static vplResult readEmission(vplGltf* g, const vplJson* material, const vplJson
         colour[k] *= strength * mean[k];
         most = fmax(most, colour[k]);
     }
-    if (most > (double)VPL_MAX_MAGNITUDE) {
+    if (most > VPL_MAX_MAGNITUDE_DOUBLE) {
         const vplJson member = vplJson_Member(material, "emissiveFactor");
         return vplJson_Fail(&member, "times its strength is %g, must be at most %g", most,
-                            (double)VPL_MAX_MAGNITUDE);
+                            VPL_MAX_MAGNITUDE_DOUBLE);
     }
     def->emission = (vplRgb){(float)colour[0], (float)colour[1], (float)colour[2]};
     g->losses[VPL_GLTF_EMISSIVE_TEXTURES] +=

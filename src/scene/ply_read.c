@@ -95,9 +95,9 @@ static vplResult readVertex(Reader* r, const vplPlyElement* e, size_t index)
             continue;
         }
         TRY(vplPly_ReadValue(&r->ply, p->type, slot <= Z ? "a coordinate" : "a number", &values[slot]));
-        if (slot <= Z && !(fabs(values[slot]) <= VPL_MAX_MAGNITUDE)) {
+        if (slot <= Z && !(fabs(values[slot]) <= VPL_MAX_MAGNITUDE_DOUBLE)) {
             return vplPly_Fail(&r->ply, at, "found %g in vertex %zu, expected a coordinate in [%g, %g]",
-                               values[slot], index, -(double)VPL_MAX_MAGNITUDE, (double)VPL_MAX_MAGNITUDE);
+                               values[slot], index, -VPL_MAX_MAGNITUDE_DOUBLE, VPL_MAX_MAGNITUDE_DOUBLE);
         }
         if (slot >= RED) {
             colour[slot - RED] = decodeColour(r, p->type, values[slot]);
