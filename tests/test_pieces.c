@@ -230,3 +230,42 @@ TEST(PiecesOfAnotherDivisionAreRefused, 1)
     vplRenderer_Destroy(r);
     vplScene_Destroy(scene);
 }
+
+// Adds piece 0 of a render of a scene in some bands to an assembly; says what came of it.
+static vplResult addPieceOf(vplAssembly* a, const vplScene* scene, const vplRenderOptions* o, int bands)
+{
+    vplRenderer* r;
+    vplPieceGrid grid;
+    uint8_t* bytes;
+    size_t size = 0, used = 0;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Divide(r, bands, &grid), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_MakePiece(r, &grid, 0, &bytes, &size), VPL_SUCCESS);
+    const vplResult result = vplAssembly_Add(a, bytes, size, "b.piece", &used);
+    vplBytes_Free(vplScene_GetContext(scene), bytes);
+    vplRenderer_Destroy(r);
+    return result;
+}
+
+TEST(PartsOfTwoPicturesAreNotPutTogether, 1)
+{
+    vplScene *room = openScene(context, "tests/data/room.json"),
+             *closed = openScene(context, "examples/scenes/closed-room.json");
+    const vplRenderOptions o = optionsOf("--method direct"), other = optionsOf("--method direct --seed 9");
+    vplAssembly* a;
+    vplImage* image = NULL;
+    assert_int_equal(vplAssembly_Create(context, &a), VPL_SUCCESS);
+    assert_int_equal(vplAssembly_GetImage(a, &image), VPL_INVALID_ARGUMENT);
+    assert_string_equal(takeMessage(), "there is no part of the picture");
+    assert_int_equal(addPieceOf(a, room, &o, 3), VPL_SUCCESS);
+    assert_int_equal(addPieceOf(a, room, &other, 3), VPL_INVALID_ARGUMENT);
+    assert_string_equal(takeMessage(), "b.piece: a part of another picture than the first: options differ");
+    assert_int_equal(addPieceOf(a, closed, &o, 3), VPL_INVALID_ARGUMENT);
+    assert_string_equal(takeMessage(),
+                        "b.piece: a part of another picture than the first: scene or camera differ");
+    assert_int_equal(addPieceOf(a, room, &o, 2), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "b.piece: divided in 2 bands"));
+    vplAssembly_Destroy(a);
+    vplScene_Destroy(room);
+    vplScene_Destroy(closed);
+}
