@@ -170,6 +170,9 @@ equals NoEffectInInfo "vpl: warning: --spp has no effect with --method keller" "
 rm "$out/u.pfm"
 succeeds HelpListsCommands "$vpl" help
 check HelpNamesExitCodes grep -q '^Exit codes: 0' "$scratch/stdout"
+sed 's/"intensity": *\[[^]]*\]/"intensity": [0, 0, 0]/' "$room" >"$scratch/dark.json"
+refuses NoReflectiveMapOfADarkLight 2 "the scene has no light with a reflective map" \
+    "$vpl" render "$scratch/dark.json" --method ssvp --show rsm --size 40x30 -o "$scratch/dark.png"
 refuses GrowingPassesNeedAnEnd 2 "grow-from needs passes, budget or max-error" \
     "$vpl" render "$room" -o "$out/a.pfm" --method keller --grow-from 4
 
