@@ -26,6 +26,8 @@ TEST(TheErrorThatIsAskedForIsKept, 2)
         vplImage* image = renderScene(scene, &o, &stats);
         assert_true(errorAgainstPaths(scene, image) <= o.stop.maxError);
         assert_true(stats.relativeErrorEstimate > 0 && stats.relativeErrorEstimate <= o.stop.maxError);
+        assert_true(stats.relativeErrorBound >= stats.relativeErrorEstimate &&
+                    stats.relativeErrorBound <= o.stop.maxError);
         assert_true((stats.relativeNoise > 0) == (stats.passes > 1) && stats.relativeBias >= 0);
         const double noise = fmax(0, stats.relativeNoise); // unknown after one pass
         const double parts = noise * noise + stats.relativeBias * stats.relativeBias;

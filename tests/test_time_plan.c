@@ -295,6 +295,7 @@ TEST(MorePatchesFollowWhileThereIsTime, 2, SLOW)
 {
     vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
     const vplRenderOptions o = optionsFor(1e7);
+    int busy = 0; // other programs took so much of the time that the paths did not end
     for (int i = 0; i < 2; i++) {
         vplRenderer* r;
         bool done = false;
@@ -311,7 +312,13 @@ TEST(MorePatchesFollowWhileThereIsTime, 2, SLOW)
         r->passMs = i == 0 ? 10 : 1500;
         setTime(r, 2000);
         done = true;
-        assert_int_equal(vplSpendTime(r, &done), VPL_SUCCESS);
+        const vplResult result = vplSpendTime(r, &done);
+        if (result == VPL_CANCELLED && r->late && busy++ < 5) {
+            vplRenderer_Destroy(r);
+            i--;
+            continue;
+        }
+        assert_int_equal(result, VPL_SUCCESS);
         assert_true(done == (i == 1));
         assert_true((r->plan->options.radiosity.patches > 700) == (i == 0));
         assert_true((r->edgePaths >= 16) == (i == 1));
@@ -340,7 +347,8 @@ TEST(ABlackPictureHasNoRelativeError, 2)
     assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
     assert_true(done && isinf(r->error.total));
     assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
-    assert_true(stats.relativeErrorEstimate < 0 && stats.errorEstimate < 0 && stats.relativeBias < 0);
+    assert_true(stats.relativeErrorEstimate < 0 && stats.errorEstimate < 0 && stats.relativeBias < 0 &&
+                stats.relativeErrorBound < 0);
     assert_int_equal(vplRenderer_WritePlan(r, path), VPL_SUCCESS);
     remove(path);
     vplImage_Destroy(image);

@@ -165,8 +165,13 @@ static void sayMore(const vplRenderStats* stats)
     complain("%d virtual lights, %lld draw calls, hash %016llx", stats->virtualLights,
              (long long)stats->drawCalls, (unsigned long long)stats->imageHash);
     if (stats->relativeErrorEstimate >= 0 && stats->relativeBias >= 0) {
-        complain("error about %.3g %%: noise %.3g %%, and edges, blur and light left out %.3g %%",
-                 100 * stats->relativeErrorEstimate, 100 * fmax(0, stats->relativeNoise),
+        char bound[64] = "";
+        if (stats->relativeErrorBound >= 0) {
+            snprintf(bound, sizeof bound, ", in nineteen of twenty pictures below %.3g %%",
+                     100 * stats->relativeErrorBound);
+        }
+        complain("error about %.3g %%%s: noise %.3g %%, and edges, blur and light left out %.3g %%",
+                 100 * stats->relativeErrorEstimate, bound, 100 * fmax(0, stats->relativeNoise),
                  100 * stats->relativeBias);
     }
     if (stats->clampLoss >= 0) {

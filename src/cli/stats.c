@@ -59,6 +59,9 @@ static void addSome(json_t* root, const vplRenderStats* s)
         json_object_set_new(root, "error_estimate", json_real(s->errorEstimate));
         json_object_set_new(root, "relative_error_estimate", json_real(s->relativeErrorEstimate));
     }
+    if (s->relativeErrorBound >= 0) {
+        json_object_set_new(root, "relative_error_bound", json_real(s->relativeErrorBound));
+    }
     if (s->relativeNoise >= 0) {
         json_object_set_new(root, "relative_noise", json_real(s->relativeNoise));
     }

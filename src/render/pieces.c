@@ -55,11 +55,7 @@ vplResult vplRenderer_Divide(const vplRenderer* r, int bands, vplPieceGrid* grid
     vplPieceGrid g = {.width = o->width, .height = o->height, .rows = (tiles + most - 1) / most * tile};
     g.bands = (o->height + g.rows - 1) / g.rows;
     g.passes = p->progressive ? p->options.stop.passes : 1;
-    if (g.passes > INT32_MAX / g.bands) {
-        return vplFail(r->runner.run.context, VPL_LIMIT, "%d passes in %d bands are more than %d pieces",
-                       g.passes, g.bands, INT32_MAX);
-    }
-    g.count = g.passes * g.bands;
+    g.count = g.passes * g.bands; // at most VPL_MAX_PASSES of 2^11
     *gridOut = g;
     return VPL_SUCCESS;
 }

@@ -46,7 +46,10 @@ static void sayError(const vplRenderer* r, double asked)
                "the error is about %.3g %%, not surely below the %.3g %% asked for: %s", 100 * reached,
                100 * asked, why);
     } else if (reached >= 0) {
-        vplLog(context, VPL_LOG_INFO, "the error is about %.3g %%", 100 * reached);
+        vplLog(context, VPL_LOG_INFO,
+               e->bound >= 0 ? "the error is about %.3g %%, and probably below %.3g %%"
+                             : "the error is about %.3g %%",
+               100 * reached, 100 * fmax(reached, e->bound));
     }
 }
 

@@ -26,7 +26,7 @@ typedef struct vplKeptPicture {
 typedef struct vplErrorParts {
     double noise; // differs from pass to pass, and falls as they add up
     double total;
-    double bound; // the true error is below it in nineteen of twenty pictures
+    double bound; // the error is below it in nineteen of twenty pictures
 } vplErrorParts;
 
 // The alternative that the planner gave up when it began path tracing or tried patches.

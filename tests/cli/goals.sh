@@ -19,6 +19,7 @@ check ClustersChooseSsvp grep -q "render it by ssvp" "$scratch/stdout"
 succeeds AnErrorIsReached "$vpl" render "$room" $wee --max-error 0.05 -o "$out/g.pfm" --stats "$out/g.json" --error-map "$out/e.pfm"
 check TheErrorIsBelow test "$(figure relative_error_estimate | awk '{ print $1 <= 0.05 }')" = 1
 check TheErrorIsNotNothing test "$(figure relative_error_estimate | awk '{ print ($1 > 0) }')" = 1
+check TheBoundIsAboveTheError test "$(figure relative_error_bound | awk -v e="$(figure relative_error_estimate)" '{ print ($1 >= e && $1 <= 0.05) }')" = 1
 check BiasIsTold test -n "$(figure relative_bias)"
 check TruthIsTold test -n "$(figure truth_paths_per_pixel)"
 equals BlocksAreEightPixelsWide "8 5" "$(sed -n 2p "$out/e.pfm")"
