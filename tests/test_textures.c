@@ -553,6 +553,50 @@ TEST(PicturesThatCannotBeReadAreGreyWithOneWarning, 1)
     rmdir(folder);
 }
 
+// Pictures of linear floats are taken as they are, but reflectances above 1 become 1 and what is no number 0.
+TEST(PicturesOfFloatsAreReflectances, 1)
+{
+    static const char* const NAMES[] = {"a.pfm", "a.hdr", "a.exr", "nan.pfm", "cut.pfm"};
+    static const float NOT_A_NUMBER[3] = {0.25f, NAN, 3};
+    static const double WANTED[][3] = {
+        {0.25, 0.5, 1}, {0.25, 0.5, 1}, {0.25, 0.5, 1}, {0.25, 0, 1}, {0.5, 0.5, 0.5}};
+    char folder[] = "/tmp/vpl-textures-XXXXXX", path[160];
+    vplImage* image;
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(vplImage_Create(context, 1, 1, &image), VPL_SUCCESS);
+    for (int k = 0; k < 3; k++) {
+        image->pixels[k] = k < 2 ? 0.25f + 0.25f * (float)k : 3;
+    }
+    for (int i = 0; i < 5; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, NAMES[i]);
+        if (i < 3) {
+            if (vplImage_Write(image, path, NULL) == VPL_INVALID_ARGUMENT && i == 2) {
+                continue; // EXR was not built in
+            }
+        } else {
+            FILE* file = fopen(path, "wb");
+            assert_non_null(file);
+            fputs("PF\n1 1\n-1.0\n", file);
+            fwrite(NOT_A_NUMBER, 4, i == 3 ? 3 : 2, file);
+            fclose(file);
+        }
+        takeMessage();
+        vplGeometry* g;
+        vplScene* scene = sceneWithPicture(context, folder, NAMES[i]);
+        assert_true((strstr(takeMessage(), "see above; it is taken as grey") != NULL) == (i == 4));
+        assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+        const vplRgb rgb = seen(g, (vplVec3){0, 0, 1}, (vplVec3){0, 0, -1});
+        assertNear((double)rgb.r, WANTED[i][0], 2e-3, "red", i);
+        assertNear((double)rgb.g, WANTED[i][1], 2e-3, "green", i);
+        assertNear((double)rgb.b, WANTED[i][2], 2e-3, "blue", i);
+        vplGeometry_Destroy(g);
+        vplScene_Destroy(scene);
+        unlink(path);
+    }
+    vplImage_Destroy(image);
+    rmdir(folder);
+}
+
 static vplResult loadAndBuild(Attempt* a)
 {
     TRY(vplScene_Load(a->context, "examples/scenes/textured-room.json", &a->scene));
