@@ -466,6 +466,30 @@ TEST(EdgesUnderManyLightsHaveFewSamples, 1)
     vplScene_Destroy(scene);
 }
 
+// 390 triangles are many for 144 pixels, and few for 576. What the user says is kept.
+TEST(PassesOfManyTrianglesHaveMoreParticles, 1)
+{
+    static const struct {
+        const char* words;
+        int particles, growFrom;
+    } CASES[] = {{"--size 16x9 --max-error 0.1", 4000, 1000},
+                 {"--size 32x18 --max-error 0.1", 1000, 500},
+                 {"--size 16x9 --budget 500", 4000, 500},
+                 {"--size 16x9 --max-error 0.1 --particles 2000", 2000, 1000},
+                 {"--size 16x9 --max-error 0.1 --grow-from 300", 4000, 300}};
+    vplScene* scene = openScene(context, "examples/scenes/garden.json");
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        vplPlan* plan;
+        assert_int_equal(vplRenderOptions_SetAll(&o, CASES[i].words), VPL_SUCCESS);
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assertNear(plan->options.particles.count, CASES[i].particles, 0, "particles", (int)i);
+        assertNear(plan->options.stop.growFrom, CASES[i].growFrom, 0, "first particles", (int)i);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
+
 // The mean square of the blocks' errors is that of the picture.
 TEST(BlocksShareTheError, 2)
 {

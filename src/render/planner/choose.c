@@ -46,19 +46,40 @@ static void chooseShadows(vplPlan* p)
 
 // Where so many emitters light each sample of a pixel, smooth edges take most of the time (1,000 lamps at 20 %: 13 s with eight
 // samples, 10 with two, 8 with one, whose edges are jagged).
-enum { MANY_EMITTERS = 256 };
+enum { MANY_EMITTERS = 256, MANY_PIXELS = 300000 };
 
-// In the pictures of tests/bench/planner 1000 to 4000 particles a pass make about the same error in the same time; small
-// passes end sooner. Neighbours that share lights blur: in the room a square of 4 leaves 1.6 %, of 8 2.3 %.
-static void chooseLights(vplPlan* p, double error)
+// Small passes end sooner. But each pass draws all triangles: where there are so many of them for each pixel, a pass of 4,000 particles
+// takes 1.1 to 2 times as long as one of 1,000 (tests/bench/README.md, "Particles of a pass").
+static const double TRIANGLES_OF_PIXEL = 1.5;
+enum { PARTICLES = 1000, PARTICLES_OF_PIXELS = 2000, PARTICLES_OF_TRIANGLES = 4000 };
+
+static void chooseParticles(const vplRunner* r, vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
-    const bool large = (double)o->output.width * o->output.height >= 300000;
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    const double pixels = (double)o->output.width * o->output.height;
+    const bool crowded = g->triangleCount > TRIANGLES_OF_PIXEL * pixels;
+    o->particles.count = crowded                 ? PARTICLES_OF_TRIANGLES
+                         : pixels >= MANY_PIXELS ? PARTICLES_OF_PIXELS
+                                                 : PARTICLES;
+    vplDecide(p, "particles", "%sin each pass; passes go on until the time or the error is reached",
+              crowded ? "many triangles are drawn for each pixel " : "");
+    if (crowded && o->stop.maxError > 0 && !(o->stop.budgetMs > 0) && o->stop.growFrom == 0 &&
+        o->stop.passes == 0) {
+        o->stop.growFrom = PARTICLES;
+        vplDecide(p, "grow-from", "a coarse picture comes first");
+    }
+}
+
+// Neighbours that share lights blur: in the room a square of 4 leaves 1.6 %, of 8 2.3 %.
+static void chooseLights(const vplRunner* r, vplPlan* p, double error)
+{
+    vplRenderOptions* o = &p->options;
+    const bool large = (double)o->output.width * o->output.height >= MANY_PIXELS;
     const bool goes = o->stop.budgetMs > 0 || o->stop.maxError > 0,
                fine = o->stop.maxError > 0 && error < 0.04;
     if (o->particles.count < 0 && goes) {
-        o->particles.count = large ? 2000 : 1000;
-        vplDecide(p, "particles", "in each pass; passes go on until the time or the error is reached");
+        chooseParticles(r, p);
     }
     if (o->pipeline.interleave < 0 && fine) {
         o->pipeline.interleave = 4;
@@ -158,7 +179,7 @@ vplResult vplChooseMethod(vplRunner* r, vplPlan* p)
                           ? "a coarse picture comes first; patches follow if there is time for them"
                           : "virtual lights with shadows leave the least error in short times");
         }
-        chooseLights(p, error);
+        chooseLights(r, p, error);
         if (lamps) {
             sampleLamps(p);
         }
