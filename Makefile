@@ -87,7 +87,7 @@ endif
 LIB_OBJECTS    := $(PLAIN_SOURCES:%.c=$(BUILD)/obj/%.o) \
                   $(foreach isa,$(ISAS),$(KERNEL_SOURCES:%.c=$(BUILD)/obj/%.$(isa).o))
 CLI_OBJECTS    := $(CLI_SOURCES:%.c=$(BUILD)/obj/%.o)
-# SUITES="image math" builds vpl-tests with those suites only; those whose names begin with - are no suites.
+# SUITES="image math" builds vpl-tests with those suites only.
 LEFT_OUT       := $(if $(SUITES),$(filter-out $(SUITES:%=tests/test_%.c),$(wildcard tests/test_*.c)))
 TEST_OBJECTS   := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out $(ABSENT_TESTS) $(LEFT_OUT),$(wildcard tests/*.c)))
 GOLDEN_OBJECTS := $(BUILD)/obj/tests/golden/golden.o
