@@ -24,7 +24,7 @@ static double band(const Setting* s, size_t offset, double* low, double* high)
 
 void summarise(Tradeoff* t)
 {
-    double cost[MAX_SETTINGS], error[MAX_SETTINGS];
+    double cost[MAX_SETTINGS] = {0}, error[MAX_SETTINGS] = {0};
     int numbers[MAX_SETTINGS];
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
