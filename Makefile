@@ -55,7 +55,8 @@ ABSENT_TESTS := tests/test_faults.c
 else
 WIDE     := $(if $(filter x86_64%,$(MACHINE)),avx2 avx512)
 endif
-STANDARD += $(if $(WIDE),-DVPL_WIDE) # not with WIDE= on the command line, which leaves AVX out
+# make WIDE= builds without AVX2 and AVX-512.
+STANDARD += $(if $(WIDE),-DVPL_WIDE)
 ISAS    := scalar sse2 $(WIDE)
 ISA_scalar := -fno-tree-vectorize -fno-tree-slp-vectorize
 ISA_sse2   :=
@@ -74,8 +75,8 @@ LIB_SOURCES    := $(filter-out src/cli/% src/mpi/%,$(wildcard src/*/*.c src/*/*/
 KERNEL_SOURCES := $(filter %_kernel.c,$(LIB_SOURCES))
 PLAIN_SOURCES  := $(filter-out %_kernel.c,$(LIB_SOURCES))
 CLI_SOURCES    := $(wildcard src/cli/*.c src/cli/*/*.c)
-# PACKED=1 compiles files that include others, in half of the time, for builds of all that are made once. Some files stay alone:
-# those with rules of their own, and those with macros for the headers of others.
+# PACKED=1 compiles several sources as one file, which takes half of the processor time. It is for builds from scratch: any change
+# compiles all of them again. Sources with rules of their own, and stb's, are compiled alone.
 ifdef PACKED
 ALONE          := src/cli/main.c src/image/stb_files.c src/image/exr.c
 pack            = $(filter $(ALONE),$(1)) $(shell tests/pack.sh $(BUILD)/packed $(filter-out $(ALONE),$(1)))
@@ -87,8 +88,9 @@ endif
 LIB_OBJECTS    := $(PLAIN_SOURCES:%.c=$(BUILD)/obj/%.o) \
                   $(foreach isa,$(ISAS),$(KERNEL_SOURCES:%.c=$(BUILD)/obj/%.$(isa).o))
 CLI_OBJECTS    := $(CLI_SOURCES:%.c=$(BUILD)/obj/%.o)
-# SUITES="image math" builds vpl-tests with those suites only.
-LEFT_OUT       := $(if $(SUITES),$(filter-out $(SUITES:%=tests/test_%.c),$(wildcard tests/test_*.c)))
+# SUITES="image math" builds vpl-tests with those suites only. Words that begin with - exclude tests at run time and are ignored.
+CHOSEN         := $(filter-out -%,$(SUITES))
+LEFT_OUT       := $(if $(CHOSEN),$(filter-out $(CHOSEN:%=tests/test_%.c),$(wildcard tests/test_*.c)))
 TEST_OBJECTS   := $(patsubst %.c,$(BUILD)/obj/%.o,$(filter-out $(ABSENT_TESTS) $(LEFT_OUT),$(wildcard tests/*.c)))
 GOLDEN_OBJECTS := $(BUILD)/obj/tests/golden/golden.o
 BENCH_PROGRAMS := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))

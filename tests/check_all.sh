@@ -32,13 +32,10 @@ fails() {
     touch build/check-all-failed
 }
 
-# suites_of NAMES...: the suites whose names are given, and those of tests that contain a name; what begins with - is left out.
+# suites_of WORDS...: each word names a suite or is a part of the names of tests, whose suites are printed.
 suites_of() {
     for word in "$@"; do
-        case $word in
-        -*) ;;
-        *) { ls "tests/test_$word.c" || grep -lE "^TEST[A-Z_]*\([A-Za-z]*$word" tests/test_*.c; } 2>/dev/null ;;
-        esac
+        { ls "tests/test_$word.c" || grep -lE "^TEST[A-Z_]*\([A-Za-z]*$word" tests/test_*.c; } 2>/dev/null
     done | sed 's|.*/test_\(.*\)\.c|\1|' | sort -u | tr '\n' ' '
 }
 
@@ -77,7 +74,8 @@ if command -v clang >/dev/null 2>&1; then
         -PredictedTime -KeepACopy -DependOnNeither"
     run clang-tsan CC=clang OPENMP=0 WIDE= SANITIZE=thread CFLAGS="-g1 -O1 -DVPL_TEST_PTHREADS"
 fi
-# The slowest of the others first: it is emulated while the last one is built.
+unset VPL_GOLDEN_STEP
+# aarch64 before clang's release: its tests run in an emulator, while the other one is built.
 TESTS="$ARITHMETIC -MapsAndRaysAgree"
 if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-static >/dev/null 2>&1 &&
     [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
@@ -86,11 +84,11 @@ if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-s
     RUNNER="qemu-aarch64-static -E LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu"
     run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 EXR=0 CFLAGS= LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
     RUNNER=
+    unset VPL_GOLDEN_STEP
 else
     ALSO=build/gcc-plain/vpl-golden
     run gcc-plain CC=gcc MODE=debug OPENMP=0 EXR=0
 fi
-unset VPL_GOLDEN_STEP
 TESTS=$ARITHMETIC
 ALSO=build/clang-release/vpl-golden
 if command -v clang >/dev/null 2>&1; then

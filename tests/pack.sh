@@ -1,7 +1,7 @@
 #!/bin/sh
-# Makes files that include as many of the given ones as fit: tests/pack.sh FOLDER SOURCE.c... prints their names within FOLDER.
-# Files of one directory fit into one, up to 16, where no name at file scope is in two of them. A compiler starts for each file
-# and reads its headers: the library compiles in about half of the processor time.
+# Writes C files that include the given sources, up to 16 each: tests/pack.sh FOLDER SOURCE.c... prints their names within FOLDER.
+# A file includes sources of one directory only, and none that define the same name at file scope. Half of the processor time of
+# compiling the library is starting compilers and reading headers, which this saves.
 folder=$1
 shift
 mkdir -p "$folder"

@@ -149,12 +149,7 @@ run() {
     shift 4
     [ -z "$VPL_FILES_ONLY" ] || tests=$FILES
     measure
-    suites=
-    case $tests in
-    -*) ;;
-    *) suites=$tests ;;
-    esac
-    if ! make -j"$jobs" --no-print-directory BUILD="$build" PACKED=1 SUITES="$suites" "$@" "$build/libvpl.a" "$build/vpl" \
+    if ! make -j"$jobs" --no-print-directory BUILD="$build" PACKED=1 SUITES="$tests" "$@" "$build/libvpl.a" "$build/vpl" \
         "$build/vpl-golden" "$build/vpl-tests" >"$here/$target.log" 2>&1; then
         echo "$target: not built, see build/portability/$target.log"
         grep -m 5 -E 'rror|undefined' "$here/$target.log"

@@ -72,8 +72,8 @@ typedef struct vplRenderStats {
     // Estimated rmse of the picture against the true one, and the same divided by the picture's mean; negative: not
     // estimated.
     double errorEstimate, relativeErrorEstimate;
-    // The relative error is below this in nineteen of twenty pictures: some hundred pixels tell an error only roughly.
-    // Negative: not known.
+    // Upper bound of the relative error; it holds in nineteen of twenty pictures. The estimate above is rough, because it
+    // comes from a few hundred pixels. Negative: unknown.
     double relativeErrorBound;
     // Its two parts, relative; the error is the root of the sum of their squares. Noise differs from pass to pass
     // (path tracing: from path to path) and is found by comparing them. Bias is common to all passes: jagged edges, light

@@ -27,7 +27,7 @@ bool vplHasIsa(vplIsa isa);
     type function##_scalar, function##_sse2, function##_avx2, function##_avx512;
 #define VPL_KERNEL_SCALAR(type, field, function) .field = function##_scalar,
 #define VPL_KERNEL_SSE2(type, field, function)   .field = function##_sse2,
-#ifdef VPL_WIDE // by the Makefile
+#ifdef VPL_WIDE // the Makefile defines it where it compiles AVX2 and AVX-512
 #define VPL_KERNEL_AVX2(type, field, function)   .field = function##_avx2,
 #define VPL_KERNEL_AVX512(type, field, function) .field = function##_avx512,
 #else

@@ -152,6 +152,14 @@ static void choosePaths(vplPlan* p)
     }
 }
 
+void vplGrowFrom(vplPlan* p, int particles)
+{
+    if (p->options.stop.growFrom == 0 && p->options.stop.passes == 0) {
+        p->options.stop.growFrom = particles;
+        vplDecide(p, "grow-from", "a coarse picture comes first");
+    }
+}
+
 // Pictures that are to be there in time, or to stop when they are good enough, begin with small passes. A pass of 125
 // particles takes 0.6 to 0.9 of the time of one of 500 (room, hall, plain, cornell-area at 640x360), because short rays
 // of the compensation and direct light take theirs, and has twice its error: only a coarse picture is worth it.
@@ -160,16 +168,13 @@ static void choosePasses(vplPlan* p)
     vplRenderOptions* o = &p->options;
     const bool ends = o->stop.budgetMs > 0 || o->stop.maxError > 0;
     const bool particles = (VPL_USE_PARTICLES & 1 << o->method) != 0;
-    if (p->progressive && ends && particles && o->stop.growFrom == 0 && o->stop.passes == 0 &&
-        o->particles.count >= 32) {
+    if (p->progressive && ends && particles && o->particles.count >= 32) {
         const int parts = o->stop.budgetMs > 0 || o->stop.maxError >= 0.15 ? 8
                           : o->stop.maxError >= 0.08                       ? 2
                                                                            : 1;
-        if (parts == 1) {
-            return;
+        if (parts > 1) {
+            vplGrowFrom(p, o->particles.count / parts);
         }
-        o->stop.growFrom = o->particles.count / parts;
-        vplDecide(p, "grow-from", "a coarse picture comes first");
     }
 }
 

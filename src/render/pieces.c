@@ -55,7 +55,7 @@ vplResult vplRenderer_Divide(const vplRenderer* r, int bands, vplPieceGrid* grid
     vplPieceGrid g = {.width = o->width, .height = o->height, .rows = (tiles + most - 1) / most * tile};
     g.bands = (o->height + g.rows - 1) / g.rows;
     g.passes = p->progressive ? p->options.stop.passes : 1;
-    g.count = g.passes * g.bands; // at most VPL_MAX_PASSES of 2^11
+    g.count = g.passes * g.bands; // at most 2^20 passes in 256 bands
     *gridOut = g;
     return VPL_SUCCESS;
 }

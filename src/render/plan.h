@@ -19,6 +19,9 @@ void vplResolveQuality(vplRenderOptions* options);
 __attribute__((format(printf, 3, 4))) void vplDecide(vplPlan* plan, const char* option, const char* format,
                                                      ...);
 
+// Lets passes grow from so many particles, unless the user said from how many or how many passes there are.
+void vplGrowFrom(vplPlan* plan, int particles);
+
 // Decisions that need only the options and the declared scene.
 void vplDecideByOptions(const vplScene* scene, vplPlan* plan);
 

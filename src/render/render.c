@@ -49,7 +49,7 @@ static void sayError(const vplRenderer* r, double asked)
         vplLog(context, VPL_LOG_INFO,
                e->bound >= 0 ? "the error is about %.3g %%, and probably below %.3g %%"
                              : "the error is about %.3g %%",
-               100 * reached, 100 * fmax(reached, e->bound));
+               100 * reached, 100 * e->bound);
     }
 }
 

@@ -101,7 +101,7 @@ void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderSta
     const double error = e->total >= 0 ? e->total : e->noise;
     stats->relativeErrorEstimate = isfinite(error) ? error : -1; // a black picture has none
     stats->errorEstimate = stats->relativeErrorEstimate >= 0 ? stats->relativeErrorEstimate * sum : -1;
-    stats->relativeErrorBound = stats->relativeErrorEstimate < 0 || e->bound < 0 ? -1 : fmax(e->bound, error);
+    stats->relativeErrorBound = stats->relativeErrorEstimate < 0 ? -1 : e->bound;
     stats->relativeNoise = e->noise;
     stats->relativeBias = vplRenderer_GetPlan(r)->options.method == VPL_METHOD_PATH ? 0
                           : stats->relativeErrorEstimate < 0                        ? -1
