@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of pictures in pieces: whatever the division and the order, the bits are those of one render.
-#include "test.h"
+#include "shapes.h"
 
 #include "base/bytes.h"
 
@@ -96,6 +96,21 @@ TEST(TheHashOfTheCallersViewIsTheSameOnEveryMachine, 1)
     vplScene_Destroy(scene);
 }
 
+// In one band and in three, by a renderer for each piece and by one.
+static void assertPiecesAreTheWhole(vplContext* context, const vplScene* scene, const char* words)
+{
+    const vplRenderOptions o = optionsOf(words);
+    const uint64_t whole = hashOfWhole(scene, &o);
+    for (int k = 0; k < 3; k++) {
+        const int bands = k > 0 ? 3 : 1;
+        const uint64_t pieces = hashOfPieces(context, scene, &o, bands, k == 2);
+        if (pieces != whole) {
+            fail_msg("%s in %d bands%s: %016llx, must be %016llx", words, bands,
+                     k == 2 ? " by one renderer" : "", (unsigned long long)pieces, (unsigned long long)whole);
+        }
+    }
+}
+
 TEST(PiecesHaveTheBitsOfOneRender, 2)
 {
     static const char* const CASES[] = {
@@ -114,21 +129,23 @@ TEST(PiecesHaveTheBitsOfOneRender, 2)
         "--method instant-radiosity --particles 8 --passes 2 --aov indirect,depth",
         "--method ssvp --first-bounce 40 --aov direct,indirect",
         "--method radiosity --patches 60 --antialias 4 --aov all"};
-    vplScene* scene;
-    assert_int_equal(vplScene_Load(context, "tests/data/room.json", &scene), VPL_SUCCESS);
+    vplScene* scene = loadScene(context, "room.json");
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
-        const vplRenderOptions o = optionsOf(CASES[i]);
-        const uint64_t whole = hashOfWhole(scene, &o);
-        for (int k = 0; k < 3; k++) {
-            const int bands = k > 0 ? 3 : 1;
-            const uint64_t pieces = hashOfPieces(context, scene, &o, bands, k == 2);
-            if (pieces != whole) {
-                fail_msg("%s in %d bands%s: %016llx, must be %016llx", CASES[i], bands,
-                         k == 2 ? " by one renderer" : "", (unsigned long long)pieces,
-                         (unsigned long long)whole);
-            }
-        }
+        assertPiecesAreTheWhole(context, scene, CASES[i]);
     }
+    vplScene_Destroy(scene);
+}
+
+// Where triangles are many, passes share the surfaces of the rows of a piece.
+TEST(PiecesOfManyTrianglesHaveTheBitsOfOneRender, 2)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    Shape ball = icosphere(5); // 20,480 triangles
+    addShape(scene, &ball, true, NULL);
+    freeShape(&ball);
+    assertPiecesAreTheWhole(context, scene,
+                            "--method keller --particles 20 --passes 2 --antialias 4 --interleave 16");
+    assertPiecesAreTheWhole(context, scene, "--method ssvp --first-bounce 40 --passes 2");
     vplScene_Destroy(scene);
 }
 

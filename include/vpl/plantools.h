@@ -65,6 +65,7 @@ struct vplPlan {
     double clampArea;     // m^2; each of N lights is clamped at the radius of a disc of clampArea / N; 0:
                           // options.lights.minDistance is given
     bool progressive;     // the picture is the mean of several passes
+    bool keepsGbuffer;    // passes share one G-buffer
     bool castsRays;       // some stage casts rays, so the geometry has a ray tree
     bool emitterRays;     // emitters are shadowed by rays, not by maps
     int emittersPerPoint; // that a tree chooses for each point, in direct light; 0: all light it
@@ -104,7 +105,7 @@ struct vplPlan {
     int stepCount;      // steps of the particle simulation; bounces of SSVP
     int particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights; // upper limit per pass
-    int64_t drawCalls;     // per pass
+    int64_t drawCalls;     // per pass; of all passes together where they share a G-buffer
     int passes;            // that the options ask for; 0: a time or an error ends them
     int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
     int patches, litPatches, patchSides; // litPatches: those that light reaches

@@ -129,6 +129,9 @@ typedef struct vplGatherDef {
 // 64 rays per pixel. The caller must set `meet`, because only the caller knows the light of surfaces.
 vplGatherDef vplDefaultGatherDef(void);
 
+// What a view shows, before it is lit: the triangle of each pixel and of its samples, with positions and normals.
+typedef struct vplGbuffer vplGbuffer;
+
 typedef struct vplShadeDef {
     vplLighting lighting;         // default VPL_LIGHTING_PHYSICAL
     vplAccumulation accumulation; // default VPL_ACCUMULATE_MULTIPASS
@@ -183,6 +186,9 @@ typedef struct vplShadeDef {
     // Only rows in [firstRow, endRow) of the image are written, with the bits that they have in the whole picture. Both are
     // multiples of VPL_TILE_SIDE, or endRow is the height. endRow 0 (default): all.
     int firstRow, endRow;
+    // Of the same geometry, view and samples, with these rows: triangles are not drawn again, and the bits are the same. Radiance
+    // and background only; multipass and batched ignore it. NULL (default): triangles are drawn.
+    const vplGbuffer* gbuffer;
     vplProgressFcn* progress; // called while vplShadeView draws; default NULL
     void* progressUser;
     uint32_t cookie; // set by vplDefaultShadeDef
@@ -203,6 +209,15 @@ typedef struct vplShadeStats {
 // another size, and for a def, compensation or gather that its default function did not make or with values out of range.
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplImage* image, vplShadeStats* statsOut);
+
+// Draws the G-buffer of a view, for several pictures of it: 16 KB for each tile of 64 x 64 pixels, times 4, or 7 where some object is
+// smooth, and 1 more for each sample. Reads samples, firstRow, endRow and progress of the def. The geometry must outlive it and
+// stay unchanged. statsOut may be NULL. VPL_INVALID_ARGUMENT for a def that vplDefaultShadeDef did not make or with values out of range.
+vplResult vplGbuffer_Create(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
+                            vplGbuffer** gbufferOut, vplRasterStats* statsOut);
+
+// NULL is allowed.
+void vplGbuffer_Destroy(vplGbuffer* gbuffer);
 
 // Points on the geometry, each with the side that it is lit from.
 typedef struct vplSurfacePoint {

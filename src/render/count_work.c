@@ -123,6 +123,12 @@ static double compensationRays(const Scale* s, double lights)
     return s->plan->compensates ? rays * (1 + 0.3 * hitLights + 0.3 * s->emitters) : 0;
 }
 
+// Triangles that drawing a view costs: samples at edges cost more than four times as much as pixels' centres.
+static double viewTriangles(const Scale* s)
+{
+    return s->triangles * (vplCountPoints(s->plan) > 1 ? 7 : 1.5);
+}
+
 static void addPicture(const Scale* s, vplWork* w)
 {
     const vplRenderOptions* o = &s->plan->options;
@@ -133,7 +139,7 @@ static void addPicture(const Scale* s, vplWork* w)
     const double pixels = all * s->probe.seen * edges, pairs = pixels * lights;
     const bool filtered = vplPixelsShareLight(s->plan);
     w->counts[PIXEL] += 0.3 * all + 75 * (points - 1) * side + (filtered ? 0.8 * all : 0);
-    w->counts[TRIANGLE] += s->triangles * supersample * (points > 1 ? 7 : 1.5);
+    w->counts[TRIANGLE] += s->plan->keepsGbuffer ? 0 : viewTriangles(s) * supersample;
     addDirect(s, pixels, w);
     switch (o->lights.shadows) {
     case VPL_LIGHT_SHADOWS_RAY:
@@ -279,6 +285,9 @@ static vplWork workOf(const Scale* s, vplStageId id)
         break;
     case VPL_STAGE_VERTEX_LIGHT: // 64 rays from every tenth vertex or so, which the camera sees
         w.counts[PATH_RAY] = 8.0 * p->groupedTriangles * s->pathDepth;
+        break;
+    case VPL_STAGE_GBUFFER:
+        w.counts[TRIANGLE] = viewTriangles(s);
         break;
     case VPL_STAGE_PICTURE:
         addPicture(s, &w);

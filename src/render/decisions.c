@@ -365,8 +365,23 @@ static void decideClamp(const vplRunner* r, vplPlan* p)
     }
 }
 
+// Passes share a G-buffer where there are more triangles per pixel than this: drawing them is less than a twentieth of a pass elsewhere
+// (tests/bench/README.md, "One G-buffer for all passes"). With eight samples the tiles take at most 120 bytes per triangle.
+static const double KEPT_TRIANGLES = 0.5;
+
+static void decideGbuffer(const vplRunner* r, vplPlan* p)
+{
+    const vplRenderOptions* o = &p->options;
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    const double pixels = (double)o->output.width * o->output.height;
+    p->keepsGbuffer = p->progressive && o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED &&
+                      o->output.supersample == 1 && VPL_SHOWS[o->output.show].output == VPL_OUTPUT_RADIANCE &&
+                      g->triangleCount > KEPT_TRIANGLES * pixels;
+}
+
 vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
 {
+    decideGbuffer(r, p);
     TRY(vplDecideTriangles(r, p));
     TRY(chooseClamp(r, p));
     TRY(countLights(r, p));

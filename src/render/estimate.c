@@ -18,6 +18,7 @@ typedef struct Bytes {
 typedef struct Scale {
     const vplPlan* plan;
     double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
+    bool smooth;                                                      // some object has shading normals
     Bytes links;                                                      // 0 where they are not known
     vplSharedBytes factors;                                           // of all pairs
 } Scale;
@@ -152,6 +153,11 @@ static double pipelineScratch(const Scale* s)
     }
 }
 
+static double countTiles(const vplRenderOptions* o)
+{
+    return ceil(o->output.width / (double)VPL_TILE_SIDE) * ceil(o->output.height / (double)VPL_TILE_SIDE);
+}
+
 // Memory of smooth edges: each worker holds the samples of a tile; interleaved shading a share per pixel and
 // the edges of every tile; radiosity one more picture.
 static double sampleScratch(const Scale* s)
@@ -159,8 +165,7 @@ static double sampleScratch(const Scale* s)
     const vplRenderOptions* o = &s->plan->options;
     const bool filtered = vplPixelsShareLight(s->plan);
     const double tile = (o->output.antialias + 1) * 16384.0 + 1024;
-    const double tiles = ceil(o->output.width / 64.0) * ceil(o->output.height / 64.0);
-    const double edges = s->plan->hasCutOuts ? 131072 : 32768;
+    const double tiles = countTiles(o), edges = s->plan->hasCutOuts ? 131072 : 32768;
     return o->output.antialias > 1 ? tile * s->workers + (filtered ? 4 * s->pixels + edges * tiles : 0) +
                                          (s->plan->showsPatches && !s->plan->gathers ? 12 * s->pixels : 0)
                                    : 0;
@@ -201,10 +206,19 @@ static double lightScratch(const Scale* s)
            (s->drawn > room ? 12 * s->pixels : 0);
 }
 
+static Bytes gbuffer(const Scale* s)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    const double planes = (s->smooth ? 7 : 4) + (o->output.antialias & ~1), plane = 16384;
+    return (Bytes){countTiles(o) * planes * plane,
+                   (9 + (o->output.antialias & ~1)) * plane * s->workers + RASTER_VIEW * s->triangles};
+}
+
 static Bytes picture(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    double scratch = pipelineScratch(s) + sampleScratch(s) + RASTER_VIEW * s->triangles;
+    double scratch = pipelineScratch(s) + sampleScratch(s);
+    scratch += s->plan->keepsGbuffer ? 0 : RASTER_VIEW * s->triangles;
     scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
     // What is behind all surfaces is a picture of its own, when the memory of interleaved shading is free again.
@@ -291,6 +305,8 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_VERTEX_LIGHT:
         return (Bytes){14 * vplPlan_DrawnPatches(p),
                        57.0 * p->patches + 16.0 * p->groupedTriangles + (p->gathers ? 12 * s->sides : 0)};
+    case VPL_STAGE_GBUFFER:
+        return gbuffer(s);
     case VPL_STAGE_PICTURE:
         return picture(s);
     case VPL_STAGE_PATHS: // sums of two halves, and the picture that they resolve to
@@ -379,6 +395,7 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
                .workers = machine != NULL ? machine->workerCount : vplContext_GetWorkerCount(r->run.context),
                .triangles = g->triangleCount,
                .objects = g->objectCount,
+               .smooth = g->shadingNormals != NULL,
                .pixels = (double)p->options.output.width * p->options.output.height,
                .lights = (double)p->virtualLights,
                .drawn = (double)drawnLights(r, p),

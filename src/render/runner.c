@@ -218,6 +218,9 @@ static uint64_t hashValue(const vplRun* run, const char* word, uint32_t build, u
         return byView ? hashNumber(hashView(state, plan), o->lights.shadows != VPL_LIGHT_SHADOWS_NONE)
                       : state;
     }
+    if (strcmp(word, "ROWS") == 0) {
+        return hashNumber(hashNumber(state, run->firstRow), run->endRow);
+    }
     if (strcmp(word, "SCENE") == 0) {
         return hashNumber(hashNumber(state, (double)run->scene->surfaces), plan->castsRays);
     }

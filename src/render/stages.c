@@ -228,6 +228,13 @@ static bool needsVertexLight(const vplPlan* p, char* why)
                   "light of patches is shown as it is");
 }
 
+static bool needsGbuffer(const vplPlan* p, char* why)
+{
+    return choose(why, p->keepsGbuffer, "passes light the same surfaces, whose triangles are drawn once",
+                  p->progressive ? "each pass draws the triangles, which takes little"
+                                 : "the picture is drawn once");
+}
+
 static bool needsPicture(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
@@ -339,10 +346,13 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
     [VPL_STAGE_VERTEX_LIGHT] = {
         "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather GROUPS",
         needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
+    [VPL_STAGE_GBUFFER] = {
+        "visible surfaces", 0.2, IN(GEOMETRY), "size VIEW antialias ROWS",
+        needsGbuffer, vplMakeGbuffer, vplDestroyGbuffer, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(EMITTER_TREES) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
             IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(PATCH_LIGHT) | IN(SOLUTION) |
-            IN(VERTEX_LIGHT), "ALWAYS",
+            IN(VERTEX_LIGHT) | IN(GBUFFER), "ALWAYS",
         needsPicture, vplMakePicture, vplDestroyImage, .report = NULL},
     [VPL_STAGE_PATHS] = {
         "paths", 1, IN(GEOMETRY) | IN(EMITTER_TREES), "ALWAYS",

@@ -3,7 +3,11 @@
 // all lights while it is in cache. Depth, normals and shadow factors are shown from the same G-buffer.
 #include "shading/shading.h"
 
+#include "math/scalar.h"
+#include "raster/raster.h"
+
 #include <stddef.h>
+#include <string.h>
 
 // ---- the G-buffer
 
@@ -11,8 +15,7 @@ void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn
 {
     const vplShadeDef* def = shading->def;
     shading->tileTask = tileTask;
-    const bool smooth = def->output == VPL_OUTPUT_RADIANCE || def->output == VPL_OUTPUT_BACKGROUND;
-    framebuffer->samples = smooth ? shading->samples : 0;
+    framebuffer->samples = vplShowsSamples(def->output) ? shading->samples : 0;
     framebuffer->planeCount = VPL_PLANE_POSITION + 3;
     shading->smoothsRims = framebuffer->samples > 0 && shading->direct.emitterCount > 0 &&
                            shading->direct.tree == NULL; // noise has no rims
@@ -24,8 +27,68 @@ void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn
     }
 }
 
+// ---- kept tiles
+
+static float* keptTile(const vplGbuffer* g, const vplTile* tile)
+{
+    const int number = tile->y / VPL_TILE_SIDE * g->tilesX + tile->x / VPL_TILE_SIDE - g->firstTile;
+    return g->tiles + (size_t)number * (size_t)(g->planeCount + g->samples) * VPL_TILE_PIXELS;
+}
+
+// Plane k of a tile, or one of its samples, that is kept.
+static void* planeOf(const vplGbuffer* g, const vplTile* tile, int k)
+{
+    return k < g->planeCount ? (void*)tile->planes[g->firstPlane + k]
+                             : (void*)tile->samples[k - g->planeCount];
+}
+
+static void keepTile(void* data, vplTile* tile, int worker)
+{
+    (void)worker;
+    const vplGbuffer* g = ((const vplShading*)data)->state;
+    float* kept = keptTile(g, tile);
+    for (int k = 0; k < g->planeCount + g->samples; k++, kept += VPL_TILE_PIXELS) {
+        memcpy(kept, planeOf(g, tile, k), VPL_TILE_PIXELS * sizeof *kept);
+    }
+}
+
+static void takeTile(void* data, vplTile* tile, int worker)
+{
+    (void)worker;
+    const vplGbuffer* g = ((const vplShading*)data)->def->gbuffer;
+    const float* kept = keptTile(g, tile);
+    for (int k = 0; k < g->planeCount + g->samples; k++, kept += VPL_TILE_PIXELS) {
+        memcpy(planeOf(g, tile, k), kept, VPL_TILE_PIXELS * sizeof *kept);
+    }
+}
+
+static vplResult openKept(vplShading* shading, vplFramebuffer* framebuffer)
+{
+    vplGbuffer* g = shading->state;
+    vplOpenGbuffer(shading, framebuffer, keepTile);
+    // The filter of interleaved shading reads beyond the rows.
+    framebuffer->firstRow = vplMaxi(shading->firstRow - (VPL_MAX_INTERLEAVE - 1), 0);
+    framebuffer->endRow = vplMini(shading->endRow + VPL_MAX_INTERLEAVE - 1, framebuffer->height);
+    const int first = framebuffer->firstRow / VPL_TILE_SIDE,
+              end = (framebuffer->endRow + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
+    g->tilesX = (framebuffer->width + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
+    g->firstTile = first * g->tilesX;
+    g->samples = framebuffer->samples;
+    g->firstPlane = shading->smooth ? VPL_PLANE_NORMAL : VPL_PLANE_TRIANGLE;
+    g->planeCount = framebuffer->planeCount - g->firstPlane;
+    g->tiles = vplAlloc(g->context, (size_t)(end - first) * (size_t)g->tilesX,
+                        (size_t)(g->planeCount + g->samples) * VPL_TILE_PIXELS * sizeof *g->tiles);
+    return g->tiles != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+// ---- drawing
+
 vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster)
 {
+    if (shading->def->gbuffer != NULL && vplShowsSamples(shading->def->output)) {
+        TRY(vplRaster_TileTask(raster, takeTile, shading));
+        return vplRaster_TileTask(raster, shading->tileTask, shading);
+    }
     for (int i = 0; i < shading->geometry->objectCount; i++) {
         vplPipeline pipeline = vplDefaultPipeline();
         vplSetCamera(shading, i, &pipeline);
@@ -56,4 +119,5 @@ static vplResult openDeferred(vplShading* shading, vplFramebuffer* framebuffer)
 }
 
 const vplStrategy vplShowStrategy = {.open = openShow, .record = vplRecordGbuffer};
+const vplStrategy vplKeepStrategy = {.open = openKept, .record = vplRecordGbuffer};
 const vplStrategy vplDeferredStrategy = {.open = openDeferred, .record = vplRecordGbuffer};

@@ -3,6 +3,7 @@
 #include "shading/shading.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { SHADE_COOKIE = 0x56504cc0, COMPENSATION_COOKIE, GATHER_COOKIE };
 
@@ -149,6 +150,39 @@ static vplResult checkDistance(const vplContext* context, const char* name, floa
                          (double)distance);
 }
 
+static vplResult checkSamples(const vplContext* context, const vplShadeDef* def)
+{
+    return def->samples >= 0 && def->samples <= VPL_MAX_SAMPLES_PER_PIXEL
+               ? VPL_SUCCESS
+               : vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.samples is %d, must be in [0, %d]",
+                         def->samples, VPL_MAX_SAMPLES_PER_PIXEL);
+}
+
+vplResult vplShadeDef_CheckGbuffer(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def)
+{
+    TRY(vplShadeDef_CheckCookie(geometry->context, def));
+    TRY(checkSamples(geometry->context, def));
+    return checkRows(geometry->context, view, def);
+}
+
+// A G-buffer of another picture would be shown without a word.
+static vplResult checkKept(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def)
+{
+    const vplGbuffer* g = def->gbuffer;
+    if (g == NULL || !vplShowsSamples(def->output)) {
+        return VPL_SUCCESS;
+    }
+    const int first = def->endRow > 0 ? def->firstRow : 0, end = def->endRow > 0 ? def->endRow : view->height;
+    const char* differs = g->geometry != geometry                     ? "geometry"
+                          : memcmp(&g->view, view, sizeof *view) != 0 ? "view"
+                          : g->samples != (def->samples & ~1)         ? "number of samples"
+                          : g->firstRow > first || g->endRow < end    ? "rows"
+                                                                      : NULL;
+    return differs == NULL ? VPL_SUCCESS
+                           : vplFail(geometry->context, VPL_INVALID_ARGUMENT,
+                                     "vplShadeDef.gbuffer was made for another %s", differs);
+}
+
 vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                             const vplImage* image)
 {
@@ -159,13 +193,11 @@ vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, co
                        image->width, image->height, view->width, view->height);
     }
     TRY(checkDistance(context, "minDistance", def->minDistance));
-    if (def->samples < 0 || def->samples > VPL_MAX_SAMPLES_PER_PIXEL) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.samples is %d, must be in [0, %d]",
-                       def->samples, VPL_MAX_SAMPLES_PER_PIXEL);
-    }
+    TRY(checkSamples(context, def));
     TRY(checkDistance(context, "areaLightMinDistance", def->areaLightMinDistance));
     TRY(vplShadeDef_CheckCompensation(context, def));
     TRY(checkRows(context, view, def));
+    TRY(checkKept(geometry, view, def));
     TRY(checkGather(context, def));
     if (def->output == VPL_OUTPUT_BACKGROUND && geometry->environment == NULL) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "a background needs an environment");

@@ -197,3 +197,47 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     }
     return result;
 }
+
+vplResult vplGbuffer_Create(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
+                            vplGbuffer** gbufferOut, vplRasterStats* statsOut)
+{
+    REQUIRE(CONTEXT_OF(geometry), geometry, view, def, gbufferOut);
+    TRY(vplShadeDef_CheckGbuffer(geometry, view, def));
+    vplShadeDef plain = vplDefaultShadeDef();
+    plain.samples = def->samples;
+    plain.progress = def->progress;
+    plain.progressUser = def->progressUser;
+    vplGbuffer* g = vplAllocZero(geometry->context, 1, sizeof *g);
+    if (g == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    g->context = geometry->context;
+    g->geometry = geometry;
+    g->view = *view;
+    vplShadeStats stats = {0};
+    vplShading shading = vplShading_Make(geometry, view, &plain);
+    g->firstRow = shading.firstRow = def->endRow > 0 ? def->firstRow : 0;
+    g->endRow = shading.endRow = def->endRow > 0 ? def->endRow : view->height;
+    shading.state = g;
+    shading.arena = vplArena_Create(geometry->context);
+    const vplResult result = shade(&shading, &vplKeepStrategy, &stats);
+    vplArena_Destroy(shading.arena);
+    if (result != VPL_SUCCESS) {
+        vplGbuffer_Destroy(g);
+        return result;
+    }
+    *gbufferOut = g;
+    if (statsOut != NULL) {
+        *statsOut = stats.raster;
+    }
+    return VPL_SUCCESS;
+}
+
+void vplGbuffer_Destroy(vplGbuffer* g)
+{
+    if (g != NULL) {
+        vplContext* context = g->context;
+        vplFree(context, g->tiles);
+        vplFree(context, g);
+    }
+}

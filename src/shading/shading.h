@@ -111,6 +111,9 @@ vplResult vplShadeDef_CheckCookie(const vplContext* context, const vplShadeDef* 
 // without compensation passes.
 vplResult vplShadeDef_CheckCompensation(const vplContext* context, const vplShadeDef* def);
 
+// Refuses a def that vplGbuffer_Create cannot use, with a message.
+vplResult vplShadeDef_CheckGbuffer(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def);
+
 // Refuses what vplShadeView cannot draw, with a message.
 vplResult vplShadeDef_Check(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                             const vplImage* image);
@@ -133,10 +136,30 @@ static inline bool vplIsLight(vplShadeOutput output)
     return output == VPL_OUTPUT_RADIANCE || output == VPL_OUTPUT_GATHER || output == VPL_OUTPUT_DENOISED;
 }
 
+// Tiles of a picture, or of some of its rows, as they are when all triangles are drawn.
+struct vplGbuffer {
+    vplContext* context;
+    const vplGeometry* geometry;
+    vplView view;
+    int samples;
+    int firstRow, endRow;       // of the pictures that it serves
+    int firstTile, tilesX;      // the first of a row of tiles; tiles in a row
+    int firstPlane, planeCount; // of a tile that are kept
+    float* tiles;               // planes, then samples, of each
+};
+
+extern const vplStrategy vplKeepStrategy; // draws the vplGbuffer that is its state
+
+// Tests whether a picture is made from samples, too, and so may be made from a vplGbuffer.
+static inline bool vplShowsSamples(vplShadeOutput output)
+{
+    return output == VPL_OUTPUT_RADIANCE || output == VPL_OUTPUT_BACKGROUND;
+}
+
 // Adds the planes of a G-buffer and the scratch memory of its tiles. `tileTask` will read them.
 void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn* tileTask);
 
-// Records one pass that writes the G-buffer, and shading->tileTask for each finished tile of it.
+// Records one pass that writes the G-buffer, unless the def has one, and shading->tileTask for each finished tile of it.
 vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster);
 
 // A task of tiles: puts the cut-outs that are seen into the G-buffer and its samples.

@@ -14,12 +14,13 @@ vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeEmit
     vplMakeReflectiveMaps, vplMakeParticles, vplMakeFirstBounce, vplMakeClusters, vplMakeParaboloids,
     vplMakeSecondBounce, vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeFurtherBounces,
     vplMakeClusteredLights, vplMakeVirtualLights, vplMakePatches, vplMakeSides, vplMakePatchMesh,
-    vplMakeFormFactors, vplMakePatchLight, vplMakeSolution, vplMakeVertexLight, vplMakePicture, vplMakePaths;
+    vplMakeFormFactors, vplMakePatchLight, vplMakeSolution, vplMakeVertexLight, vplMakeGbuffer,
+    vplMakePicture, vplMakePaths;
 
 vplDestroyFcn vplDestroyGeometry, vplDestroyEmitterMaps, vplDestroyEmitterTrees, vplDestroyReflectiveMaps,
     vplDestroyLightSet, vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyFurtherBounces,
     vplDestroyClusteredLights, vplDestroyPatches, vplDestroySides, vplDestroyPatchMesh, vplDestroyFormFactors,
-    vplDestroyImage, vplDestroyPaths;
+    vplDestroyGbuffer, vplDestroyImage, vplDestroyPaths;
 
 vplReportFcn vplReportGeometry, vplReportParticles, vplReportClusteredLights, vplReportVirtualLights,
     vplReportPatches, vplReportSides, vplReportFormFactors, vplReportSolution;

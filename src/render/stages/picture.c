@@ -41,6 +41,7 @@ static vplResult addBackground(const vplRun* run, const vplView* view, const vpl
     def.lighting = shown->lighting;
     def.output = VPL_OUTPUT_BACKGROUND;
     def.samples = smooth ? shown->samples : 0;
+    def.gbuffer = smooth ? shown->gbuffer : NULL;
     def.firstRow = shown->firstRow;
     def.endRow = shown->endRow;
     vplImage* background;
@@ -183,6 +184,7 @@ static vplShadeDef describe(const vplRun* run)
     def.particleCount = o->method == VPL_METHOD_DIRECT ? 1 : vplParticlesOfPass(run->plan, run->pass);
     def.firstRow = run->firstRow;
     def.endRow = run->endRow;
+    def.gbuffer = run->results[VPL_STAGE_GBUFFER];
     def.emittersPerPoint = run->plan->emittersPerPoint;
     def.emitterTrees = run->results[VPL_STAGE_EMITTER_TREES];
     def.emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL;
@@ -268,6 +270,30 @@ static vplResult shadeBatches(const vplRun* run, Shading* s, int total, vplImage
         }
     }
     return VPL_SUCCESS;
+}
+
+// ---- the surfaces that all passes light
+
+vplResult vplMakeGbuffer(const vplRun* run, void** resultOut)
+{
+    const vplView view = vplView_At(&run->plan->view, 0.5, 0.5); // as of a picture's only sample
+    vplGbuffer* gbuffer = NULL;
+    vplRasterStats stats;
+    vplShadeDef def = vplDefaultShadeDef();
+    def.samples = run->plan->options.output.antialias;
+    def.firstRow = run->firstRow;
+    def.endRow = run->endRow;
+    def.progress = run->progress;
+    def.progressUser = run->runner;
+    TRY(vplGbuffer_Create(run->results[VPL_STAGE_GEOMETRY], &view, &def, &gbuffer, &stats));
+    *resultOut = gbuffer;
+    vplRun_AddRaster(run, &stats);
+    return VPL_SUCCESS;
+}
+
+void vplDestroyGbuffer(void* result)
+{
+    vplGbuffer_Destroy(result);
 }
 
 // ---- the stage
