@@ -167,6 +167,7 @@ bench: all
 	$(BUILD)/bench/lightcuts examples/scenes/room.json
 	$(BUILD)/bench/rsm examples/scenes/room.json
 	$(BUILD)/bench/clusters examples/scenes/room.json
+	$(BUILD)/bench/gbuffer examples/scenes/room.json
 	$(BUILD)/bench/history examples/scenes/room.json
 	$(BUILD)/bench/flicker examples/scenes/room.json instant-radiosity 12
 	$(BUILD)/bench/paraboloid --quick examples/scenes/room.json
