@@ -76,8 +76,21 @@ static void chooseParticles(const vplRunner* r, vplPlan* p)
 }
 
 // Interleaved shading blurs: in the room it leaves an error of 1.6 % with K = 4 and of 2.3 % with K = 8, and more where triangles are
-// as small as pixels (conference-spot: 7 and 8.6 %). So K is 4 for errors below these.
+// as small as pixels (conference-spot: 7 and 8.6 %). So K is 4 for errors below these; but not in scenes of few triangles, where little is
+// blurred (furnace and plain at 2 %: 0.45 and 0.8 of the time; loft, of 492 triangles, would take 1.5 times as long).
 static const double FINE = 0.04, FINE_IF_CROWDED = 0.15;
+enum { FEW_TRIANGLES = 128 };
+
+// For errors from this one on, four samples at edges take 0.8 of the time of eight (boxes, conference-spot, sponza-sun and
+// sibenik-spot at 20 %); two are too few in the last two, which take 1.4 to 2 times as long.
+static const double LARGE_ERROR = 0.15;
+
+static bool allowsLittleBlur(const vplRunner* r, const vplRenderOptions* o)
+{
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    const double fine = isCrowded(r, o) ? FINE_IF_CROWDED : g->triangleCount > FEW_TRIANGLES ? FINE : 0;
+    return o->stop.maxError > 0 && o->stop.maxError < fine;
+}
 
 // Chooses particles, interleaving, samples at edges and the placement of lights.
 static void chooseLights(const vplRunner* r, vplPlan* p, double error)
@@ -85,11 +98,10 @@ static void chooseLights(const vplRunner* r, vplPlan* p, double error)
     vplRenderOptions* o = &p->options;
     const bool large = (double)o->output.width * o->output.height >= MANY_PIXELS;
     const bool goes = o->stop.budgetMs > 0 || o->stop.maxError > 0;
-    const bool fine = o->stop.maxError > 0 && error < (isCrowded(r, o) ? FINE_IF_CROWDED : FINE);
     if (o->particles.count < 0 && goes) {
         chooseParticles(r, p);
     }
-    if (o->pipeline.interleave < 0 && fine) {
+    if (o->pipeline.interleave < 0 && allowsLittleBlur(r, o)) {
         o->pipeline.interleave = 4;
         vplDecide(p, "interleave", "so small an error allows little blur");
     }
@@ -97,6 +109,10 @@ static void chooseLights(const vplRunner* r, vplPlan* p, double error)
         p->emitterCount >= MANY_EMITTERS) {
         o->output.antialias = 2;
         vplDecide(p, "antialias", "many lights have many rims of shadows, where paths smooth what errs most");
+    }
+    if (o->output.antialias == 8 && o->stop.maxError >= LARGE_ERROR) {
+        o->output.antialias = 4;
+        vplDecide(p, "antialias", "edges are a small part of so large an error");
     }
     if (o->output.antialias == 8 && error < 0.1 && goes) {
         o->output.antialias = 16;
