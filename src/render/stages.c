@@ -231,8 +231,11 @@ static bool needsVertexLight(const vplPlan* p, char* why)
 static bool needsGbuffer(const vplPlan* p, char* why)
 {
     return choose(why, p->keepsGbuffer, "passes light the same surfaces, whose triangles are drawn once",
-                  p->progressive ? "each pass draws the triangles, which takes little"
-                                 : "the picture is drawn once");
+                  !p->progressive                     ? "the picture is drawn once"
+                  : p->options.output.supersample > 1 ? "each sample of a pixel is another view"
+                  : p->options.pipeline.kind < VPL_ACCUMULATE_DEFERRED
+                      ? "triangles are drawn for each light"
+                      : "each pass draws the triangles, which takes little");
 }
 
 static bool needsPicture(const vplPlan* p, char* why)

@@ -76,21 +76,25 @@ static void chooseParticles(const vplRunner* r, vplPlan* p)
 }
 
 // Interleaved shading blurs: in the room it leaves an error of 1.6 % with K = 4 and of 2.3 % with K = 8, and more where triangles are
-// as small as pixels (conference-spot: 7 and 8.6 %). So K is 4 for errors below these; but not in scenes of few triangles, where little is
-// blurred (furnace and plain at 2 %: 0.45 and 0.8 of the time; loft, of 492 triangles, would take 1.5 times as long).
+// as small as pixels (conference-spot: 7 and 8.6 %). So K is 4 for errors below these. It stays 8 in scenes of few triangles, where little is
+// blurred (furnace and plain at 2 %, 320x180: 0.45 and 0.8 of the time; loft, of 492 triangles, would take 1.5 times as long), but not in
+// small pictures of them (room-area at 3 %, 96x54: 2 to 5 times the rays with three of six seeds).
 static const double FINE = 0.04, FINE_IF_CROWDED = 0.15;
-enum { FEW_TRIANGLES = 128 };
-
-// For errors from this one on, four samples at edges take 0.8 of the time of eight (boxes, conference-spot, sponza-sun and
-// sibenik-spot at 20 %); two are too few in the last two, which take 1.4 to 2 times as long.
-static const double LARGE_ERROR = 0.15;
+enum { FEW_TRIANGLES = 128, SMALL_PICTURE = 50000 };
 
 static bool allowsLittleBlur(const vplRunner* r, const vplRenderOptions* o)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const double fine = isCrowded(r, o) ? FINE_IF_CROWDED : g->triangleCount > FEW_TRIANGLES ? FINE : 0;
+    const bool small = o->output.width * o->output.height < SMALL_PICTURE;
+    const double fine = isCrowded(r, o)                             ? FINE_IF_CROWDED
+                        : g->triangleCount > FEW_TRIANGLES || small ? FINE
+                                                                    : 0;
     return o->stop.maxError > 0 && o->stop.maxError < fine;
 }
+
+// For errors from this one on, four samples at edges take 0.8 of the time of eight (boxes, conference-spot, sponza-sun and
+// sibenik-spot at 20 %); two are too few in the last two, which take 1.4 to 2 times as long.
+static const double LARGE_ERROR = 0.15;
 
 // Chooses particles, interleaving, samples at edges and the placement of lights.
 static void chooseLights(const vplRunner* r, vplPlan* p, double error)
