@@ -20,9 +20,9 @@ typedef struct Setting {
 // Destroys the scene.
 static Setting openSetting(vplScene* scene)
 {
-    Setting s = {.view = vplView_Create(vplScene_GetCamera(scene, 0), WIDTH, HEIGHT),
-                 .geometry = buildGeometry(scene),
-                 .lights = rollLights(COUNT, 5)};
+    Setting s = {.lights = rollLights(COUNT, 5)};
+    s.view = vplView_Create(vplScene_GetCamera(scene, 0), WIDTH, HEIGHT);
+    s.geometry = buildGeometry(scene);
     s.lamp = vplDefaultEmitterDef();
     s.lamp.position = vplVec(0.5f, 2, 1);
     return s;
