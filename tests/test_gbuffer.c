@@ -165,7 +165,7 @@ TEST(RowsHaveTheBitsOfTheWholePicture, 2)
     closeSetting(&s);
 }
 
-// Stages and passes over the scene draw triangles as they did.
+// Pictures of depth or irradiance, and passes over the scene for each light, do not use the G-buffer.
 TEST(PicturesThatCannotUseItDrawTriangles, 2)
 {
     static const struct {
@@ -232,7 +232,7 @@ TEST(AGbufferOfAnotherPictureIsRefused, 1)
 
 // ---- in renders
 
-// The room has 36 triangles: more than one for two pixels of 8 x 8, but not of 16 x 16.
+// The room has 36 triangles: more than half a triangle per pixel in a picture of 8 x 8 pixels, less in one of 16 x 16.
 TEST(PassesShareItWhereTrianglesAreMany, 1)
 {
     vplScene* scene = loadScene(context, "room.json");

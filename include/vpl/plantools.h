@@ -105,7 +105,7 @@ struct vplPlan {
     int stepCount;      // steps of the particle simulation; bounces of SSVP
     int particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights; // upper limit per pass
-    int64_t drawCalls;     // per pass; of all passes together where they share a G-buffer
+    int64_t drawCalls;     // per pass; if keepsGbuffer, of all passes together
     int passes;            // that the options ask for; 0: a time or an error ends them
     int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
     int patches, litPatches, patchSides; // litPatches: those that light reaches

@@ -129,7 +129,8 @@ typedef struct vplGatherDef {
 // 64 rays per pixel. The caller must set `meet`, because only the caller knows the light of surfaces.
 vplGatherDef vplDefaultGatherDef(void);
 
-// What a view shows, before it is lit: the triangle of each pixel and of its samples, with positions and normals.
+// A G-buffer: for each pixel of a view the visible triangle with its position and normal, and the visible triangle of each
+// sample. Pictures of one view under different lights can share it.
 typedef struct vplGbuffer vplGbuffer;
 
 typedef struct vplShadeDef {
@@ -186,8 +187,9 @@ typedef struct vplShadeDef {
     // Only rows in [firstRow, endRow) of the image are written, with the bits that they have in the whole picture. Both are
     // multiples of VPL_TILE_SIDE, or endRow is the height. endRow 0 (default): all.
     int firstRow, endRow;
-    // Of the same geometry, view and samples, with these rows: triangles are not drawn again, and the bits are the same. Radiance
-    // and background only; multipass and batched ignore it. NULL (default): triangles are drawn.
+    // A G-buffer of the same geometry, view and samples, that has these rows. Triangles are then not rasterized again, and the
+    // picture has the same bits. Only radiance and background read it; multipass and batched ignore it. NULL (default): triangles
+    // are rasterized.
     const vplGbuffer* gbuffer;
     vplProgressFcn* progress; // called while vplShadeView draws; default NULL
     void* progressUser;
@@ -210,9 +212,10 @@ typedef struct vplShadeStats {
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplImage* image, vplShadeStats* statsOut);
 
-// Draws the G-buffer of a view, for several pictures of it: 16 KB for each tile of 64 x 64 pixels, times 4, or 7 where some object is
-// smooth, and 1 more for each sample. Reads samples, firstRow, endRow and progress of the def. The geometry must outlive it and
-// stay unchanged. statsOut may be NULL. VPL_INVALID_ARGUMENT for a def that vplDefaultShadeDef did not make or with values out of range.
+// Rasterizes a view into a new G-buffer. The function reads samples, firstRow, endRow and progress of the def, and ignores the
+// rest. The geometry must outlive the G-buffer and must not change. Memory: 16 KiB per plane for each tile of 64 x 64 pixels; the
+// planes are 4 for triangle and position, 3 for normals if some object is smooth, and 1 per sample. statsOut may be NULL.
+// VPL_INVALID_ARGUMENT for a def that vplDefaultShadeDef did not make, and for samples or rows out of range.
 vplResult vplGbuffer_Create(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                             vplGbuffer** gbufferOut, vplRasterStats* statsOut);
 

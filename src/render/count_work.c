@@ -123,7 +123,7 @@ static double compensationRays(const Scale* s, double lights)
     return s->plan->compensates ? rays * (1 + 0.3 * hitLights + 0.3 * s->emitters) : 0;
 }
 
-// Triangles that drawing a view costs: samples at edges cost more than four times as much as pixels' centres.
+// The cost of rasterizing a view, in triangles. With samples at edges it is more than four times as high.
 static double viewTriangles(const Scale* s)
 {
     return s->triangles * (vplCountPoints(s->plan) > 1 ? 7 : 1.5);

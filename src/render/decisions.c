@@ -365,18 +365,24 @@ static void decideClamp(const vplRunner* r, vplPlan* p)
     }
 }
 
-// Passes share a G-buffer where there are more triangles per pixel than this: drawing them is less than a twentieth of a pass elsewhere
-// (tests/bench/README.md, "One G-buffer for all passes"). With eight samples the tiles take at most 120 bytes per triangle.
-static const double KEPT_TRIANGLES = 0.5;
+double vplTrianglesPerPixel(const vplRunner* r, const vplRenderOptions* o)
+{
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    return g->triangleCount / ((double)o->output.width * o->output.height);
+}
 
+// Above this number of triangles per pixel, all passes share one G-buffer. Below it, rasterization takes about a twentieth of a pass or
+// less (tests/bench/README.md, "One G-buffer for all passes"). With eight samples per pixel, the G-buffer takes at most 120 bytes per
+// triangle.
+static const double SHARED_TRIANGLES_PER_PIXEL = 0.5;
+
+// Decides whether passes share a G-buffer: they must be lit from one, and show the same view.
 static void decideGbuffer(const vplRunner* r, vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
-    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const double pixels = (double)o->output.width * o->output.height;
     p->keepsGbuffer = p->progressive && o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED &&
                       o->output.supersample == 1 && VPL_SHOWS[o->output.show].output == VPL_OUTPUT_RADIANCE &&
-                      g->triangleCount > KEPT_TRIANGLES * pixels;
+                      vplTrianglesPerPixel(r, o) > SHARED_TRIANGLES_PER_PIXEL;
 }
 
 vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)

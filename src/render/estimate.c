@@ -23,6 +23,9 @@ typedef struct Scale {
     vplSharedBytes factors;                                           // of all pairs
 } Scale;
 
+// Bytes of one plane of a tile: a float or an int per pixel.
+static const double TILE_PLANE = 4.0 * VPL_TILE_SIDE * VPL_TILE_SIDE;
+
 // Bytes per triangle that the rasterizer holds while it draws a view, and the six faces of a cube map.
 static const double RASTER_VIEW = 34, RASTER_CUBE = 150;
 
@@ -164,7 +167,7 @@ static double sampleScratch(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
     const bool filtered = vplPixelsShareLight(s->plan);
-    const double tile = (o->output.antialias + 1) * 16384.0 + 1024;
+    const double tile = (o->output.antialias + 1) * TILE_PLANE + 1024;
     const double tiles = countTiles(o), edges = s->plan->hasCutOuts ? 131072 : 32768;
     return o->output.antialias > 1 ? tile * s->workers + (filtered ? 4 * s->pixels + edges * tiles : 0) +
                                          (s->plan->showsPatches && !s->plan->gathers ? 12 * s->pixels : 0)
@@ -206,12 +209,13 @@ static double lightScratch(const Scale* s)
            (s->drawn > room ? 12 * s->pixels : 0);
 }
 
+// Triangles and positions, normals where some object is smooth, and samples. Each worker holds a tile while it is drawn.
 static Bytes gbuffer(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    const double planes = (s->smooth ? 7 : 4) + (o->output.antialias & ~1), plane = 16384;
-    return (Bytes){countTiles(o) * planes * plane,
-                   (9 + (o->output.antialias & ~1)) * plane * s->workers + RASTER_VIEW * s->triangles};
+    const double samples = o->output.antialias & ~1, kept = (s->smooth ? 7 : 4) + samples;
+    return (Bytes){countTiles(o) * kept * TILE_PLANE,
+                   (9 + samples) * TILE_PLANE * s->workers + RASTER_VIEW * s->triangles};
 }
 
 static Bytes picture(const Scale* s)

@@ -19,8 +19,11 @@ void vplResolveQuality(vplRenderOptions* options);
 __attribute__((format(printf, 3, 4))) void vplDecide(vplPlan* plan, const char* option, const char* format,
                                                      ...);
 
-// Lets passes grow from so many particles, unless the user said from how many or how many passes there are.
+// Sets the number of particles of the first pass, if the user gave neither --grow-from nor --passes.
 void vplGrowFrom(vplPlan* plan, int particles);
+
+// Triangles of the scene over pixels of the picture.
+double vplTrianglesPerPixel(const vplRunner* runner, const vplRenderOptions* options);
 
 // Decisions that need only the options and the declared scene.
 void vplDecideByOptions(const vplScene* scene, vplPlan* plan);

@@ -218,7 +218,7 @@ static uint64_t hashValue(const vplRun* run, const char* word, uint32_t build, u
         return byView ? hashNumber(hashView(state, plan), o->lights.shadows != VPL_LIGHT_SHADOWS_NONE)
                       : state;
     }
-    if (strcmp(word, "ROWS") == 0) {
+    if (strcmp(word, "ROWS") == 0) { // those that are needed
         return hashNumber(hashNumber(state, run->firstRow), run->endRow);
     }
     if (strcmp(word, "SCENE") == 0) {

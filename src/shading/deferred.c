@@ -35,44 +35,48 @@ static float* keptTile(const vplGbuffer* g, const vplTile* tile)
     return g->tiles + (size_t)number * (size_t)(g->planeCount + g->samples) * VPL_TILE_PIXELS;
 }
 
-// Plane k of a tile, or one of its samples, that is kept.
-static void* planeOf(const vplGbuffer* g, const vplTile* tile, int k)
+// Array k of a tile that is kept: a plane or, after the planes, the triangles of a sample.
+static void* arrayOf(const vplGbuffer* g, const vplTile* tile, int k)
 {
     return k < g->planeCount ? (void*)tile->planes[g->firstPlane + k]
                              : (void*)tile->samples[k - g->planeCount];
 }
 
+// Copies a tile to the G-buffer if `keeps`, else back.
+static void copyTile(const vplGbuffer* g, const vplTile* tile, bool keeps)
+{
+    float* kept = keptTile(g, tile);
+    for (int k = 0; k < g->planeCount + g->samples; k++, kept += VPL_TILE_PIXELS) {
+        void* array = arrayOf(g, tile, k);
+        memcpy(keeps ? (void*)kept : array, keeps ? array : (void*)kept, VPL_TILE_PIXELS * sizeof *kept);
+    }
+}
+
 static void keepTile(void* data, vplTile* tile, int worker)
 {
     (void)worker;
-    const vplGbuffer* g = ((const vplShading*)data)->state;
-    float* kept = keptTile(g, tile);
-    for (int k = 0; k < g->planeCount + g->samples; k++, kept += VPL_TILE_PIXELS) {
-        memcpy(kept, planeOf(g, tile, k), VPL_TILE_PIXELS * sizeof *kept);
-    }
+    copyTile(((const vplShading*)data)->state, tile, true);
 }
 
 static void takeTile(void* data, vplTile* tile, int worker)
 {
     (void)worker;
-    const vplGbuffer* g = ((const vplShading*)data)->def->gbuffer;
-    const float* kept = keptTile(g, tile);
-    for (int k = 0; k < g->planeCount + g->samples; k++, kept += VPL_TILE_PIXELS) {
-        memcpy(planeOf(g, tile, k), kept, VPL_TILE_PIXELS * sizeof *kept);
-    }
+    copyTile(((const vplShading*)data)->def->gbuffer, tile, false);
 }
 
 static vplResult openKept(vplShading* shading, vplFramebuffer* framebuffer)
 {
     vplGbuffer* g = shading->state;
     vplOpenGbuffer(shading, framebuffer, keepTile);
-    // The filter of interleaved shading reads beyond the rows.
+    // Interleaved shading filters with neighbouring rows, so these are kept, too.
     framebuffer->firstRow = vplMaxi(shading->firstRow - (VPL_MAX_INTERLEAVE - 1), 0);
     framebuffer->endRow = vplMini(shading->endRow + VPL_MAX_INTERLEAVE - 1, framebuffer->height);
     const int first = framebuffer->firstRow / VPL_TILE_SIDE,
               end = (framebuffer->endRow + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
     g->tilesX = (framebuffer->width + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
     g->firstTile = first * g->tilesX;
+    g->firstRow = shading->firstRow;
+    g->endRow = shading->endRow;
     g->samples = framebuffer->samples;
     g->firstPlane = shading->smooth ? VPL_PLANE_NORMAL : VPL_PLANE_TRIANGLE;
     g->planeCount = framebuffer->planeCount - g->firstPlane;
@@ -83,12 +87,8 @@ static vplResult openKept(vplShading* shading, vplFramebuffer* framebuffer)
 
 // ---- drawing
 
-vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster)
+static vplResult recordSurfaces(vplShading* shading, vplRaster* raster)
 {
-    if (shading->def->gbuffer != NULL && vplShowsSamples(shading->def->output)) {
-        TRY(vplRaster_TileTask(raster, takeTile, shading));
-        return vplRaster_TileTask(raster, shading->tileTask, shading);
-    }
     for (int i = 0; i < shading->geometry->objectCount; i++) {
         vplPipeline pipeline = vplDefaultPipeline();
         vplSetCamera(shading, i, &pipeline);
@@ -98,9 +98,14 @@ vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster)
         pipeline.planeMask = 15u << VPL_PLANE_TRIANGLE | (shading->smooth ? 7u << VPL_PLANE_NORMAL : 0);
         TRY(vplRaster_Draw(raster, &shading->meshes[i], &pipeline));
     }
-    if (shading->geometry->cutOuts != NULL) {
-        TRY(vplRaster_TileTask(raster, vplShowCutOuts, shading));
-    }
+    return shading->geometry->cutOuts != NULL ? vplRaster_TileTask(raster, vplShowCutOuts, shading)
+                                              : VPL_SUCCESS;
+}
+
+vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster)
+{
+    const bool kept = shading->def->gbuffer != NULL && vplShowsSamples(shading->def->output);
+    TRY(kept ? vplRaster_TileTask(raster, takeTile, shading) : recordSurfaces(shading, raster));
     return vplRaster_TileTask(raster, shading->tileTask, shading);
 }
 

@@ -165,14 +165,14 @@ vplResult vplShadeDef_CheckGbuffer(const vplGeometry* geometry, const vplView* v
     return checkRows(geometry->context, view, def);
 }
 
-// A G-buffer of another picture would be shown without a word.
+// Refuses a G-buffer that was made for another picture: its pixels would be shown without a warning.
 static vplResult checkKept(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def)
 {
     const vplGbuffer* g = def->gbuffer;
     if (g == NULL || !vplShowsSamples(def->output)) {
         return VPL_SUCCESS;
     }
-    const int first = def->endRow > 0 ? def->firstRow : 0, end = def->endRow > 0 ? def->endRow : view->height;
+    const int first = vplShadeDef_FirstRow(def), end = vplShadeDef_EndRow(def, view);
     const char* differs = g->geometry != geometry                     ? "geometry"
                           : memcmp(&g->view, view, sizeof *view) != 0 ? "view"
                           : g->samples != (def->samples & ~1)         ? "number of samples"

@@ -39,7 +39,9 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
                    .inverseClamp = vplInverseSquare(def->minDistance)},
         .samples = def->samples & ~1,
         .smooth = geometry->shadingNormals != NULL,
-        .irradiance = def->output == VPL_OUTPUT_GATHER || def->output == VPL_OUTPUT_DENOISED};
+        .irradiance = def->output == VPL_OUTPUT_GATHER || def->output == VPL_OUTPUT_DENOISED,
+        .firstRow = vplShadeDef_FirstRow(def),
+        .endRow = view != NULL ? vplShadeDef_EndRow(def, view) : 0};
 }
 
 // ---- what a render owns
@@ -178,6 +180,14 @@ static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats
     return strategy->finish != NULL ? strategy->finish(s, stats) : VPL_SUCCESS;
 }
 
+static vplResult shadeInArena(vplShading* s, const vplStrategy* strategy, vplShadeStats* stats)
+{
+    s->arena = vplArena_Create(s->geometry->context);
+    const vplResult result = shade(s, strategy, stats);
+    vplArena_Destroy(s->arena);
+    return result;
+}
+
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplImage* image, vplShadeStats* statsOut)
 {
@@ -185,17 +195,13 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     TRY(vplShadeDef_Check(geometry, view, def, image));
     vplShadeStats stats = {0};
     vplShading shading = vplShading_Make(geometry, view, def);
-    shading.firstRow = def->endRow > 0 ? def->firstRow : 0;
-    shading.endRow = def->endRow > 0 ? def->endRow : view->height;
     shading.image = image;
     shading.shadowRays = &stats.shadowRays;
-    shading.arena = vplArena_Create(geometry->context);
-    const vplResult result = shade(&shading, chooseStrategy(def, geometry), &stats);
-    vplArena_Destroy(shading.arena);
-    if (result == VPL_SUCCESS && statsOut != NULL) {
+    TRY(shadeInArena(&shading, chooseStrategy(def, geometry), &stats));
+    if (statsOut != NULL) {
         *statsOut = stats;
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
 vplResult vplGbuffer_Create(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
@@ -203,10 +209,12 @@ vplResult vplGbuffer_Create(const vplGeometry* geometry, const vplView* view, co
 {
     REQUIRE(CONTEXT_OF(geometry), geometry, view, def, gbufferOut);
     TRY(vplShadeDef_CheckGbuffer(geometry, view, def));
-    vplShadeDef plain = vplDefaultShadeDef();
-    plain.samples = def->samples;
-    plain.progress = def->progress;
-    plain.progressUser = def->progressUser;
+    vplShadeDef unlit = vplDefaultShadeDef();
+    unlit.samples = def->samples;
+    unlit.firstRow = def->firstRow;
+    unlit.endRow = def->endRow;
+    unlit.progress = def->progress;
+    unlit.progressUser = def->progressUser;
     vplGbuffer* g = vplAllocZero(geometry->context, 1, sizeof *g);
     if (g == NULL) {
         return VPL_OUT_OF_MEMORY;
@@ -215,13 +223,9 @@ vplResult vplGbuffer_Create(const vplGeometry* geometry, const vplView* view, co
     g->geometry = geometry;
     g->view = *view;
     vplShadeStats stats = {0};
-    vplShading shading = vplShading_Make(geometry, view, &plain);
-    g->firstRow = shading.firstRow = def->endRow > 0 ? def->firstRow : 0;
-    g->endRow = shading.endRow = def->endRow > 0 ? def->endRow : view->height;
+    vplShading shading = vplShading_Make(geometry, view, &unlit);
     shading.state = g;
-    shading.arena = vplArena_Create(geometry->context);
-    const vplResult result = shade(&shading, &vplKeepStrategy, &stats);
-    vplArena_Destroy(shading.arena);
+    const vplResult result = shadeInArena(&shading, &vplKeepStrategy, &stats);
     if (result != VPL_SUCCESS) {
         vplGbuffer_Destroy(g);
         return result;

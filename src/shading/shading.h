@@ -111,6 +111,17 @@ vplResult vplShadeDef_CheckCookie(const vplContext* context, const vplShadeDef* 
 // without compensation passes.
 vplResult vplShadeDef_CheckCompensation(const vplContext* context, const vplShadeDef* def);
 
+// The rows of the picture that are wanted: [first, end).
+static inline int vplShadeDef_FirstRow(const vplShadeDef* def)
+{
+    return def->endRow > 0 ? def->firstRow : 0;
+}
+
+static inline int vplShadeDef_EndRow(const vplShadeDef* def, const vplView* view)
+{
+    return def->endRow > 0 ? def->endRow : view->height;
+}
+
 // Refuses a def that vplGbuffer_Create cannot use, with a message.
 vplResult vplShadeDef_CheckGbuffer(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def);
 
@@ -136,21 +147,21 @@ static inline bool vplIsLight(vplShadeOutput output)
     return output == VPL_OUTPUT_RADIANCE || output == VPL_OUTPUT_GATHER || output == VPL_OUTPUT_DENOISED;
 }
 
-// Tiles of a picture, or of some of its rows, as they are when all triangles are drawn.
+// The contents of the tiles of a view, or of some of its rows, after all triangles were rasterized.
 struct vplGbuffer {
     vplContext* context;
     const vplGeometry* geometry;
     vplView view;
     int samples;
-    int firstRow, endRow;       // of the pictures that it serves
-    int firstTile, tilesX;      // the first of a row of tiles; tiles in a row
-    int firstPlane, planeCount; // of a tile that are kept
-    float* tiles;               // planes, then samples, of each
+    int firstRow, endRow;       // pictures of these rows can use it
+    int firstTile, tilesX;      // number of the first tile that is kept; tiles in a row of the whole view
+    int firstPlane, planeCount; // planes of a tile that are kept
+    float* tiles;               // for each tile its planes, then its samples
 };
 
-extern const vplStrategy vplKeepStrategy; // draws the vplGbuffer that is its state
+extern const vplStrategy vplKeepStrategy; // fills the vplGbuffer that is its state
 
-// Tests whether a picture is made from samples, too, and so may be made from a vplGbuffer.
+// Tests whether an output uses coverage samples. Only such outputs read a vplGbuffer.
 static inline bool vplShowsSamples(vplShadeOutput output)
 {
     return output == VPL_OUTPUT_RADIANCE || output == VPL_OUTPUT_BACKGROUND;
@@ -159,7 +170,8 @@ static inline bool vplShowsSamples(vplShadeOutput output)
 // Adds the planes of a G-buffer and the scratch memory of its tiles. `tileTask` will read them.
 void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn* tileTask);
 
-// Records one pass that writes the G-buffer, unless the def has one, and shading->tileTask for each finished tile of it.
+// Records the draws that fill the G-buffer or, if the def has a vplGbuffer, a task that copies its tiles; then shading->tileTask,
+// which reads each finished tile.
 vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster);
 
 // A task of tiles: puts the cut-outs that are seen into the G-buffer and its samples.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Measures what passes save that share one G-buffer: times of a picture without lights whose triangles are drawn, of one whose
-// G-buffer is kept, and of making that, in turn; and checks that both pictures have the same bits.
+// Measures how much time a shared G-buffer saves. Three things are timed in turn: a picture without lights whose triangles are
+// rasterized, the same picture from a G-buffer that was kept, and the making of that G-buffer. Both pictures must have the same bits.
 // `bench/gbuffer SCENE [WIDTH HEIGHT [SAMPLES [RUNS]]]`; figures are medians.
 #include "bench.h"
 

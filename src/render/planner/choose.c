@@ -55,8 +55,7 @@ enum { PARTICLES = 1000, PARTICLES_OF_LARGE_PICTURE = 2000, PARTICLES_OF_LARGE_S
 
 static bool isCrowded(const vplRunner* r, const vplRenderOptions* o)
 {
-    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    return g->triangleCount > TRIANGLES_PER_PIXEL * o->output.width * o->output.height;
+    return vplTrianglesPerPixel(r, o) > TRIANGLES_PER_PIXEL;
 }
 
 // Chooses the number of particles of a pass.
@@ -75,13 +74,15 @@ static void chooseParticles(const vplRunner* r, vplPlan* p)
     }
 }
 
-// Interleaved shading blurs: in the room it leaves an error of 1.6 % with K = 4 and of 2.3 % with K = 8, and more where triangles are
-// as small as pixels (conference-spot: 7 and 8.6 %). So K is 4 for errors below these. It stays 8 in scenes of few triangles, where little is
-// blurred (furnace and plain at 2 %, 320x180: 0.45 and 0.8 of the time; loft, of 492 triangles, would take 1.5 times as long), but not in
-// small pictures of them (room-area at 3 %, 96x54: 2 to 5 times the rays with three of six seeds).
+// Interleaved shading blurs. With K = 4 and K = 8 it leaves an error of 1.6 and 2.3 % in the room, and of 7 and 8.6 % in conference-spot,
+// where triangles are as small as pixels. So K is 4 if the error that is asked for is below a limit: FINE, or FINE_IF_CROWDED where
+// triangles are that small. Scenes of few triangles have few edges to blur, and keep K = 8 (furnace and plain at 2 %, 320x180: 0.45 and 0.8
+// of the time with K = 4; loft, which has 492 triangles, would take 1.5 times as long). In small pictures 8 pixels are a large part of a
+// surface, so these keep K = 4 (with K = 8, room-area at 3 %, 96x54, casts 2 to 5 times the rays with four of six seeds).
 static const double FINE = 0.04, FINE_IF_CROWDED = 0.15;
 enum { FEW_TRIANGLES = 128, SMALL_PICTURE = 50000 };
 
+// Tests whether the error that was asked for needs K = 4.
 static bool allowsLittleBlur(const vplRunner* r, const vplRenderOptions* o)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
@@ -92,8 +93,8 @@ static bool allowsLittleBlur(const vplRunner* r, const vplRenderOptions* o)
     return o->stop.maxError > 0 && o->stop.maxError < fine;
 }
 
-// For errors from this one on, four samples at edges take 0.8 of the time of eight (boxes, conference-spot, sponza-sun and
-// sibenik-spot at 20 %); two are too few in the last two, which take 1.4 to 2 times as long.
+// From this error on, four samples per pixel are enough for edges: they take 0.8 of the time of eight (boxes, conference-spot, sponza-sun
+// and sibenik-spot at 20 %). With two samples, sponza-sun and sibenik-spot take 1.4 to 2 times as long as with eight.
 static const double LARGE_ERROR = 0.15;
 
 // Chooses particles, interleaving, samples at edges and the placement of lights.

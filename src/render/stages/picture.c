@@ -272,19 +272,14 @@ static vplResult shadeBatches(const vplRun* run, Shading* s, int total, vplImage
     return VPL_SUCCESS;
 }
 
-// ---- the surfaces that all passes light
+// ---- the G-buffer that all passes share
 
 vplResult vplMakeGbuffer(const vplRun* run, void** resultOut)
 {
-    const vplView view = vplView_At(&run->plan->view, 0.5, 0.5); // as of a picture's only sample
+    const vplView view = vplView_At(&run->plan->view, 0.5, 0.5); // as shadeSample has it for one sample
+    const vplShadeDef def = describe(run);
     vplGbuffer* gbuffer = NULL;
     vplRasterStats stats;
-    vplShadeDef def = vplDefaultShadeDef();
-    def.samples = run->plan->options.output.antialias;
-    def.firstRow = run->firstRow;
-    def.endRow = run->endRow;
-    def.progress = run->progress;
-    def.progressUser = run->runner;
     TRY(vplGbuffer_Create(run->results[VPL_STAGE_GEOMETRY], &view, &def, &gbuffer, &stats));
     *resultOut = gbuffer;
     vplRun_AddRaster(run, &stats);
