@@ -4,6 +4,7 @@
 #include "shapes.h"
 
 #include "math/vec.h"
+#include "render/stages/results.h"
 #include "shading/compensation.h"
 #include "visibility/blocks.h"
 
@@ -417,4 +418,26 @@ TEST(NearDistanceOfASphereIsThatOfItsChords, 2)
     assert_int_equal(vplFindNearDistance(sphere, &view, 0.2, &distance), VPL_SUCCESS);
     assertNear((double)distance, (double)vplGeometry_Diagonal(sphere), 1e-6, "diagonal", 0);
     vplGeometry_Destroy(sphere);
+}
+
+// ---- lights of a hit
+
+TEST(HitsTakeFewLightsWherePixelsDo, 1)
+{
+    (void)context;
+    const double area = VPL_PI * 20; // 20 circles of a clamp distance of 1 m
+    static const struct {
+        double distance, pixelLights, expected;
+    } ROWS[] = {
+        {1, 30, 20},                             // as many as there are circles
+        {0.1, 30, 32},                           // at most 32
+        {10, 30, 16},                            // at least 16
+        {1, 9, 18},                              // twice those of a pixel
+        {0.1, 9, 18},  {10, 9, 16}, {1, 3.6, 8}, // the first pass of 125 particles that 64 pixels share
+        {1, 0, 8},
+    };
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        const double lights = vplLightsOfHit(area, ROWS[i].distance, ROWS[i].pixelLights);
+        assertNear(lights, ROWS[i].expected, 1e-12, "lights", (int)i);
+    }
 }

@@ -118,7 +118,7 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
 static double compensationRays(const Scale* s, double lights)
 {
     const double distance = fmax((double)s->plan->options.lights.minDistance, 1e-9);
-    const double hitLights = vplLightsOfHit(s->area, distance);
+    const double hitLights = vplLightsOfHit(s->area, distance, lights);
     const double rays = vplShortRaysOf(s->plan, lights);
     return s->plan->compensates ? rays * (1 + 0.3 * hitLights + 0.3 * s->emitters) : 0;
 }

@@ -170,9 +170,9 @@ vplResult vplGatherAtGroups(const vplRun* run, const vplPatchMesh* mesh, vplRgb*
 // Finds the irradiance of sides by the light that sides send and by emitters.
 vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOut);
 
-// The number of virtual lights that light a hit of a short ray: `area` of all surfaces in square metres, clamp distance in metres.
-// (compensation_rays.c)
-double vplLightsOfHit(double area, double distance);
+// The number of virtual lights that light a hit of a short ray: `area` of all surfaces in square metres, clamp distance in metres,
+// lights that a pixel evaluates. (compensation_rays.c)
+double vplLightsOfHit(double area, double distance, double pixelLights);
 
 // The number of short rays of a pixel that evaluates so many virtual lights.
 int vplShortRaysOf(const vplPlan* plan, double lights);
