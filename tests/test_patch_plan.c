@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of --method auto where it chooses radiosity for an error: in which scenes, and how it goes on.
-#include "scenes.h"
+#include "shapes.h"
 
 #include "render/renderer.h"
 
@@ -251,6 +251,35 @@ TEST(PatchesTakeOverWhereLightsNeedFarMore, 2, SLOW)
 TEST(PatchesComeFirstWhereDoorsHideLights, 2, SLOW)
 {
     endWithPatches(context, "examples/scenes/flat.json", 128, 0.08, 2, VPL_METHOD_RADIOSITY);
+}
+
+static int patchesFor(const vplScene* scene, double error)
+{
+    vplRenderOptions o = optionsFor(error);
+    vplPlan* plan;
+    o.output.width = 320;
+    o.output.height = 180;
+    assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+    assert_int_equal(plan->options.method, VPL_METHOD_RADIOSITY);
+    const int patches = plan->options.radiosity.patches;
+    vplPlan_Destroy(plan);
+    return patches;
+}
+
+// Groups of small triangles need more patches than large ones, unless the error is so small that a second plan follows anyway.
+TEST(ManyTrianglesBeginWithMorePatches, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    assert_int_equal(patchesFor(scene, 0.1), 1000);
+    Shape shape = icosphere(3); // 1,280 triangles
+    const vplMat4 place =
+        vplMat4_FromParts((vplVec3){1.5f, 0.5f, 2}, (double[3]){0, 0, 0}, (vplVec3){0.1f, 0.1f, 0.1f});
+    addShape(scene, &shape, false, &place);
+    freeShape(&shape);
+    assert_int_equal(patchesFor(scene, 0.2), 2000);
+    assert_int_equal(patchesFor(scene, 0.08), 2000);
+    assert_int_equal(patchesFor(scene, 0.07), 1000);
+    vplScene_Destroy(scene);
 }
 
 // Takes `steps` steps, and counts those that ended with a plan of patches, of which there was none before.
