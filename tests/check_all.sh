@@ -11,14 +11,21 @@ ARITHMETIC="bench clusters cluster_results draw_patches emission exr gather geom
     -Threads -Everywhere -ChoicesDoNotDepend -AHostsOwnScheduler"
 export OMP_WAIT_POLICY=passive # configurations are tested side by side: threads that wait must not spin
 
-# check NAME: the tests of a configuration that was built, and their time.
+# check NAME: the tests of a configuration that was built, in two processes side by side, and their time.
 check() {
     start=$(date +%s)
+    log=build/$1.log
+    good=true
+    $RUNNER "build/$1/vpl-tests" --quick --even $TESTS >"build/$1-even.log" 2>&1 &
+    even=$!
     # A fork of a process under the address sanitizer has its checks, too.
-    if { [ ! -e "build/$1/nulls" ] || "build/$1/nulls" >>"build/$1.log" 2>&1; } &&
-        $RUNNER "build/$1/vpl-tests" --quick $TESTS >>"build/$1.log" 2>&1 &&
-        { [ ! -e "build/$1/vpl-golden" ] ||
-            $RUNNER "build/$1/vpl-golden" check golden "build/$1/golden" >>"build/$1.log" 2>&1; }; then
+    { [ ! -e "build/$1/nulls" ] || "build/$1/nulls" >>"$log" 2>&1; } &&
+        $RUNNER "build/$1/vpl-tests" --quick --odd $TESTS >>"$log" 2>&1 &&
+        { [ ! -e "build/$1/vpl-golden" ] || $RUNNER "build/$1/vpl-golden" check golden "build/$1/golden" >>"$log" 2>&1; } ||
+        good=false
+    wait $even || good=false
+    cat "build/$1-even.log" >>"$log"
+    if $good; then
         echo "ok $1, $(($(date +%s) - start)) s"
     else
         fails "$1"
