@@ -429,12 +429,14 @@ TEST(HitsTakeFewLightsWherePixelsDo, 1)
     static const struct {
         double distance, pixelLights, expected;
     } ROWS[] = {
-        {1, 30, 20},                             // as many as there are circles
-        {0.1, 30, 32},                           // at most 32
-        {10, 30, 16},                            // at least 16
-        {1, 9, 18},                              // twice those of a pixel
-        {0.1, 9, 18},  {10, 9, 16}, {1, 3.6, 8}, // the first pass of 125 particles that 64 pixels share
-        {1, 0, 8},
+        {1, 30, 20},   // as many as there are circles
+        {0.1, 30, 32}, // at most 32
+        {10, 30, 16},  // at least 16
+        {1, 9, 18},    // at most twice those of a pixel
+        {0.1, 9, 18},  // the same for a small clamp distance
+        {10, 9, 16},   // 16 is less than twice those of a pixel
+        {1, 3.6, 8},   // 8, if twice those of a pixel is less: a pass of 125 particles, interleaved 8 x 8
+        {1, 0, 8},     // no lights at pixels
     };
     for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
         const double lights = vplLightsOfHit(area, ROWS[i].distance, ROWS[i].pixelLights);

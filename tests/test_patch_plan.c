@@ -13,13 +13,19 @@ static vplRenderOptions optionsFor(double error)
     return o;
 }
 
-static vplMethod methodFor(const vplScene* scene, const vplRenderOptions* o)
+// The options of the plan for `o`.
+static vplRenderOptions planned(const vplScene* scene, const vplRenderOptions* o)
 {
     vplPlan* plan;
     assert_int_equal(vplPlan_Create(scene, o, NULL, &plan), VPL_SUCCESS);
-    const vplMethod method = plan->options.method;
+    const vplRenderOptions options = plan->options;
     vplPlan_Destroy(plan);
-    return method;
+    return options;
+}
+
+static vplMethod methodFor(const vplScene* scene, const vplRenderOptions* o)
+{
+    return planned(scene, o).method;
 }
 
 TEST(PatchesAreChosenWhereTheyAreLikelyToBeCheaper, 2)
@@ -256,17 +262,14 @@ TEST(PatchesComeFirstWhereDoorsHideLights, 2, SLOW)
 static int patchesFor(const vplScene* scene, double error)
 {
     vplRenderOptions o = optionsFor(error);
-    vplPlan* plan;
     o.output.width = 320;
     o.output.height = 180;
-    assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
-    assert_int_equal(plan->options.method, VPL_METHOD_RADIOSITY);
-    const int patches = plan->options.radiosity.patches;
-    vplPlan_Destroy(plan);
-    return patches;
+    o = planned(scene, &o);
+    assert_int_equal(o.method, VPL_METHOD_RADIOSITY);
+    return o.radiosity.patches;
 }
 
-// Groups of small triangles need more patches than large ones, unless the error is so small that a second plan follows anyway.
+// A scene of many small triangles begins with 2,000 patches, unless the error is so small that a second plan follows anyway.
 TEST(ManyTrianglesBeginWithMorePatches, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/flat.json");

@@ -107,16 +107,16 @@ static int firstGather(const vplRenderOptions* o)
     return o->stop.maxError >= 0.15 ? 4 : 16;
 }
 
-// In scenes of many triangles, which are put into groups, twice as many patches come first for errors from LARGE_ERROR on: in furnished
-// 1,000 leave 15 % of error, so that most renders at 20 % and all at 10 % needed a second plan (320x180, medians of five: 20 % 2.1 -> 2.3 s,
-// but at most 3.4 instead of 5.3; 10 % 10 -> 5 s). With 3,000 it is 3.5 and 5.8 s.
-static const double LARGE_ERROR = 0.08;
+// The first plan has twice as many patches if the scene has more triangles than VPL_FIRST_PATCHES and the error that is asked for is at
+// least GROUPED_ERROR. Triangles are then grouped into patches, and 1,000 patches leave an error of 15 % in furnished, so that most renders
+// at 20 % and all at 10 % needed a second plan. Medians with 1,000, 2,000 and 3,000 patches (320x180): 10.5, 4.9 and 5.8 s at 10 %; 2.1,
+// 2.3 and 3.5 s at 20 %, the slowest 5.3, 3.4 and 3.9 s. Smaller errors need a second plan anyway.
+static const double GROUPED_ERROR = 0.08;
 
-static int firstPatches(const vplRunner* r, const vplRenderOptions* o)
+static int firstPatches(const vplGeometry* g, double error)
 {
-    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const bool groups = g->triangleCount > VPL_FIRST_PATCHES;
-    return groups && o->stop.maxError >= LARGE_ERROR ? 2 * VPL_FIRST_PATCHES : VPL_FIRST_PATCHES;
+    return groups && error >= GROUPED_ERROR ? 2 * VPL_FIRST_PATCHES : VPL_FIRST_PATCHES;
 }
 
 // Virtual lights are foreseen to need HIDDEN_RAYS / (worth * error^2) rays per pixel, where `worth` is vplLook's. The flat, whose
@@ -155,7 +155,7 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const bool can = o->stop.maxError > 0 && canUsePatches(r, p, o);
     const double plain = can ? patchesOfPlain(r, p) : 0;
-    const int first = firstPatches(r, o);
+    const int first = firstPatches(g, o->stop.maxError);
     const bool hidden =
         can && fitInto(r, p, o, first, firstGather(o), VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p));
     if (plain == 0 && !hidden) {

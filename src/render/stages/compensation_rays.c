@@ -25,10 +25,11 @@ static double workOf(const vplPlan* plan, double lights)
     return lights * (plan->options.lights.shadows == VPL_LIGHT_SHADOWS_NONE ? 1.0 / 32 : 1);
 }
 
-// The number of virtual lights that light a hit of a short ray. Noise is low once the clamp distance is the radius of one light's share of
-// all surfaces. More than 32 lights gain less than they cost; with 16, corners are blotchy in scenes whose clamp distance is small
-// (tests/bench/README.md, "Lights of a hit"). The first pictures of a render have few lights for each pixel, and more than twice as many at
-// a hit gain nothing: the first pass of the boxes (125 particles) takes half of the time and leaves the same error.
+// The number of virtual lights that are evaluated where a short ray hits a surface. Noise is low once the clamp distance is the radius of
+// one light's share of all surfaces. More than 32 lights gain less than they cost; with 16, corners are blotchy in scenes whose clamp
+// distance is small (tests/bench/README.md, "Lights of a hit"). A hit evaluates at most twice as many lights as a pixel, or FEWEST_HIT_LIGHTS
+// if that is more. This limit matters in the small first passes of a render: a pass of 125 particles in a room with 1,000 boxes takes half
+// of the time, and its picture has the same error.
 enum { MIN_HIT_LIGHTS = 16, MAX_HIT_LIGHTS = 32, FEWEST_HIT_LIGHTS = 8 };
 
 double vplLightsOfHit(double area, double distance, double pixelLights)

@@ -170,8 +170,8 @@ vplResult vplGatherAtGroups(const vplRun* run, const vplPatchMesh* mesh, vplRgb*
 // Finds the irradiance of sides by the light that sides send and by emitters.
 vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOut);
 
-// The number of virtual lights that light a hit of a short ray: `area` of all surfaces in square metres, clamp distance in metres,
-// lights that a pixel evaluates. (compensation_rays.c)
+// The number of virtual lights that are evaluated where a short ray hits a surface. `area` is that of all surfaces in square metres,
+// `distance` the clamp distance in metres, `pixelLights` the number of lights that a pixel evaluates. (compensation_rays.c)
 double vplLightsOfHit(double area, double distance, double pixelLights);
 
 // The number of short rays of a pixel that evaluates so many virtual lights.
