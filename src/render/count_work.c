@@ -114,13 +114,19 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
     }
 }
 
+// Shadow rays to emitters where a short ray hits a surface. A tree chooses four of many.
+static double hitEmitters(const vplPlan* p)
+{
+    return vplTreesOf(p).emitters <= p->emitterCount ? 4 * CHOICE_WORK : p->emitterCount;
+}
+
 // Short rays, a fifth or so of which hit something near.
 static double compensationRays(const Scale* s, double lights)
 {
     const double distance = fmax((double)s->plan->options.lights.minDistance, 1e-9);
     const double hitLights = vplLightsOfHit(s->area, distance, lights);
     const double rays = vplShortRaysOf(s->plan, lights);
-    return s->plan->compensates ? rays * (1 + 0.3 * hitLights + 0.3 * s->emitters) : 0;
+    return s->plan->compensates ? rays * (1 + 0.3 * hitLights + 0.3 * hitEmitters(s->plan)) : 0;
 }
 
 // The cost of rasterizing a view, in triangles. With samples at edges it is more than four times as high.

@@ -21,6 +21,9 @@
 // Emitters that light a pixel, for each that lights a hit, of which a pixel has many.
 enum { PER_HIT = 16 };
 
+// Emitters that a tree chooses for each hit, where all of more than VPL_EMITTERS_OF_HIT would cast shadow rays.
+enum { CHOSEN_AT_HIT = 4 };
+
 // Only a D far larger than a scene of white walls, where roulette ends no walk, comes near this.
 enum { MAX_BOUNCES = 1024 };
 
@@ -234,6 +237,15 @@ void vplAddCompensation(const vplShading* shading, const vplPoints* points, cons
     }
 }
 
+// The number of emitters that a tree chooses for a hit; 0: all emitters light it.
+static int emittersOfHit(const vplShadeDef* shade, const vplCompensationDef* def)
+{
+    const bool many = def->shadows == NULL && def->emitterCount > VPL_EMITTERS_OF_HIT;
+    return shade->emittersPerPoint > 0 ? (shade->emittersPerPoint + PER_HIT - 1) / PER_HIT
+           : many                      ? CHOSEN_AT_HIT
+                                       : 0;
+}
+
 vplResult vplCompensator_Open(vplShading* shading)
 {
     const vplShadeDef* shade = shading->def;
@@ -249,7 +261,7 @@ vplResult vplCompensator_Open(vplShading* shading)
                          .direct = {.emitters = def->emitters,
                                     .shadows = def->shadows,
                                     .emitterCount = def->emitterCount,
-                                    .perPoint = (shade->emittersPerPoint + PER_HIT - 1) / PER_HIT,
+                                    .perPoint = emittersOfHit(shade, def),
                                     .trianglesPerPoint = (def->trianglesPerPoint + PER_HIT - 1) / PER_HIT,
                                     .weight = 1,
                                     .areaLights = def->areaLights,

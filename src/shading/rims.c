@@ -2,7 +2,8 @@
 // Rims of shadows. Where two neighbours on one surface receive different light from emitters, the light in
 // the centre of each is replaced by the mean over the samples of the pixel. The search starts at such
 // neighbours, and at some corners of pixels whose light differs from that in the centre, which finds shadows
-// thinner than a pixel. It spreads to the neighbours of every pixel whose samples differ.
+// thinner than a pixel. It spreads to the neighbours of every pixel whose samples differ. Where many emitters cast shadow
+// rays, four samples stand for all: a rim is that of one emitter, which is a small part of the light.
 #include "shading/edges.h"
 
 // Light differs if the smaller is less than this share of the larger.
@@ -20,9 +21,16 @@ typedef enum PointKind {
     SAMPLE  // a sample of a pixel
 } PointKind;
 
+// More emitters are many.
+enum { FEW_EMITTERS = 64 };
+
+// Samples that stand for all 8 or 16: one in each quarter of the columns, and one in each quarter of the rows.
+enum { FOUR_OF_8 = 1 << 0 | 1 << 2 | 1 << 5 | 1 << 7, FOUR_OF_16 = 1 << 1 | 1 << 3 | 1 << 12 | 1 << 14 };
+
 typedef struct Rims {
     const vplShading* shading;
     const vplTile* tile;
+    uint16_t few;           // samples that stand for all
     const uint16_t* own;    // samples of each element that show the surface in its centre
     float light[RIM_CELLS]; // from emitters in centres of pixels; NAN where nothing is seen
     uint8_t listed[RIM_CELLS];
@@ -97,6 +105,22 @@ static void list(Rims* r, int cell)
 
 // ---- light at points
 
+// The samples of a pixel that are lit: those that show the surface in its centre, or a few of them.
+static uint32_t litSamples(const Rims* r, int cell)
+{
+    const uint32_t own = r->own[vplElementOf(xOf(cell), yOf(cell))], few = own & r->few;
+    return __builtin_popcount(few) > 1 ? few : own;
+}
+
+// The share of a pixel's samples, among them the centre, that each lit one stands for.
+static float shareOf(const Rims* r, int cell)
+{
+    const uint32_t own = r->own[vplElementOf(xOf(cell), yOf(cell))];
+    const int lit = __builtin_popcount(litSamples(r, cell));
+    const float each = (float)(__builtin_popcount(own) + 1) / (float)(lit + 1); // the centre is one more
+    return each / (float)(r->tile->sampleCount + 1);
+}
+
 // Lists the neighbours of a pixel whose samples differ.
 static void spread(Rims* r, int cell)
 {
@@ -114,7 +138,6 @@ static void flush(Rims* r)
 {
     vplEdgeQueue* q = &r->queue;
     const vplShading* s = r->shading;
-    const float share = 1 / (float)(r->tile->sampleCount + 1);
     _Alignas(64) float part[3][VPL_LANES] = {{0}};
     if (q->count > 0) {
         s->kernels.addEmitters(s, &s->direct, &q->block.points, part, q->rays);
@@ -129,6 +152,7 @@ static void flush(Rims* r)
             list(r, cell);
         } else if (r->kind == SAMPLE) {
             const vplReflector* to = &vplFacetCache_Get(s, q->block.points.triangle[l], q->cache)->reflector;
+            const float share = shareOf(r, cell);
             double factor[3];
             vplFactorAtPoint(s, to, q->block.points.triangle[l], vplSurface_At(&q->block.surface, l), factor);
             for (int c = 0; c < 3; c++) {
@@ -246,7 +270,7 @@ static void smoothPixel(Rims* r, int cell)
     const vplTileSums* sums = tile->scratch;
     const int at[2] = {xOf(cell), yOf(cell)}, element = vplElementOf(at[0], at[1]);
     const vplReflector* to = &vplFacetCache_Get(s, triangleOf(r, cell), r->queue.cache)->reflector;
-    const float share = (float)__builtin_popcount(r->own[element]) / (float)(tile->sampleCount + 1);
+    const float share = (float)__builtin_popcount(litSamples(r, cell)) * shareOf(r, cell);
     float* pixel = vplPixelOf(s, tile->x + at[0], tile->y + at[1]);
     double factor[3];
     vplFactorInPixel(s, to, triangleOf(r, cell), tile->x + at[0], tile->y + at[1], factor);
@@ -254,10 +278,23 @@ static void smoothPixel(Rims* r, int cell)
         const float rest = pixel[c] - share * (float)(factor[c] * (double)sums->emitted[c][element]);
         pixel[c] = rest > 0 ? rest : 0; // rounding may leave less than nothing
     }
-    for (uint32_t left = r->own[element]; left != 0; left &= left - 1) {
+    for (uint32_t left = litSamples(r, cell); left != 0; left &= left - 1) {
         const int i = __builtin_ctz(left);
         push(r, cell, tile->samples[i][element], at, vplSubPixel_OfSample(i, tile->sampleCount));
     }
+}
+
+// The samples of a pixel that stand for all of them.
+static uint16_t fewSamples(const vplDirectLight* direct, int samples)
+{
+    bool many = direct->emitterCount > FEW_EMITTERS && direct->shadows == NULL && direct->maps == NULL;
+    for (int i = 0; many && i < direct->emitterCount; i++) {
+        many = !direct->rays[i].parallel; // the sun is a large part of the light
+    }
+    return (uint16_t)(!many           ? UINT16_MAX
+                      : samples == 8  ? FOUR_OF_8
+                      : samples == 16 ? FOUR_OF_16
+                                      : UINT16_MAX);
 }
 
 void vplSmoothRims(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
@@ -267,6 +304,7 @@ void vplSmoothRims(const vplShading* s, const vplTile* tile, vplFacetCache* cach
     Rims r;
     r.shading = s;
     r.tile = tile;
+    r.few = fewSamples(&s->direct, tile->sampleCount);
     r.own = own;
     r.listCount = 0;
     r.queue = (vplEdgeQueue){.shading = s, .cache = cache, .rays = &sums->shadowRays};

@@ -9,6 +9,9 @@
 
 // ---- light
 
+// At most so many emitters light a hit of a short ray; a tree chooses a few of more, unless these have shadow maps.
+enum { VPL_EMITTERS_OF_HIT = 64 };
+
 // An emitter as its kernel reads it.
 typedef struct vplEmitterRay {
     vplVec3 position;            // metres; point and spot
