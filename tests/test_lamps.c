@@ -328,9 +328,10 @@ TEST(OnlyManyEmittersAreChosenFrom, 1)
             assert_int_equal(plan->emitterCount, many ? 1025 : 1024);
             assert_true(plan->mapEmitterCount > 0 && plan->mapEmitterCount <= 256);
             vplPlan_Destroy(plan);
-            o.lights.emitterSamples = 100; // has its meaning
+            o.lights.emitterSamples = 100;
             assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
-            assert_true(plan->emittersPerPoint == 0 && plan->emitterCount <= 100);
+            assert_int_equal(plan->emittersPerPoint, i < 4 ? 100 : 0);
+            assert_true(plan->emitterCount >= 1024 && plan->mapEmitterCount <= 100);
             vplPlan_Destroy(plan);
         }
         vplScene_Destroy(scene);

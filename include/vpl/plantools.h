@@ -86,13 +86,11 @@ struct vplPlan {
     bool estimatesLoss; // statistics say how much light the clamp takes away
     vplView view;       // the camera, posed
     vplCameraDef camera;
-    const vplEmitterDef* emitters; // those of the scene, posed, or the sample of them that stands for all
+    const vplEmitterDef* emitters; // those of the scene, posed
     int emitterCount;
     const vplEmitterDef*
         mapEmitters; // those with reflective maps: all, or a sample of them where there are many
     int mapEmitterCount;
-    const vplEmitterDef* sceneEmitters; // all of them
-    int sceneEmitterCount;
 
     vplPlanStage stages[VPL_MAX_PLAN_STAGES]; // in the order in which they run
     int stageCount;

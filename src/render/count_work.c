@@ -12,9 +12,6 @@
 
 #include <math.h>
 
-// Choosing one of many emitters from a tree takes as long as some shadow rays.
-enum { CHOICE_WORK = 8 };
-
 enum { BUILD, TRIANGLE, TEXEL, PIXEL, LIGHT, SHADOW_RAY, PATH_RAY, FORM_FACTOR };
 
 // A few rays into the picture, and one from each surface that they hit.
@@ -104,7 +101,7 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
     const bool sky = s->plan->hasSky && o->method != VPL_METHOD_KELLER;
     const double rays =
         (s->plan->emitterRays ? s->emitters : 0) +
-        (area ? o->lights.areaLightSamples * (vplPixelsChooseTriangles(s->plan) ? CHOICE_WORK : 1) : 0) +
+        (area ? o->lights.areaLightSamples * (vplPixelsChooseTriangles(s->plan) ? VPL_CHOICE_WORK : 1) : 0) +
         (sky ? o->lights.skySamples : 0);
     if (s->plan->showsDirect) {
         // Emitters are mostly in front of what is seen, also where surfaces do not face each other.
@@ -117,7 +114,7 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
 // Shadow rays to emitters where a short ray hits a surface. A tree chooses four of many.
 static double hitEmitters(const vplPlan* p)
 {
-    return vplTreesOf(p).emitters <= p->emitterCount ? 4 * CHOICE_WORK : p->emitterCount;
+    return vplTreesOf(p).emitters <= p->emitterCount ? 4 * VPL_CHOICE_WORK : p->emitterCount;
 }
 
 // Short rays, a fifth or so of which hit something near.
@@ -325,7 +322,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
                .lamps = g->emits,
                .area = vplGeometry_Area(g),
                .sides = p->patchSides,
-               .emitters = p->emittersPerPoint > 0 ? CHOICE_WORK * p->emittersPerPoint : p->emitterCount,
+               .emitters = p->emittersPerPoint > 0 ? VPL_CHOICE_WORK * p->emittersPerPoint : p->emitterCount,
                .reflectance = vplGeometry_MeanReflectance(g)};
     const double doublings = log2(fmax(s.triangles, 2) / 32);
     s.depth = 1 + 0.1 * fmax(doublings, 0);

@@ -214,9 +214,10 @@ static void chooseShadows(vplPlan* p)
     p->emitterRays =
         o->lights.shadows == VPL_LIGHT_SHADOWS_RAY || (!documented && maps > VPL_MAX_EMITTER_MAP_BYTES);
     p->emitterRays = p->emitterRays || p->mapEmitters != p->emitters; // not each has a map
-    if (p->emitterCount > VPL_MOST_EMITTERS && !documented && o->method != VPL_METHOD_PATH) {
+    const int asked = o->lights.emitterSamples, most = asked > 0 ? asked : VPL_MOST_EMITTERS;
+    if (p->emitterCount > most && !documented && o->method != VPL_METHOD_PATH) {
         p->emitterRays = true;
-        p->emittersPerPoint = VPL_EMITTERS_PER_POINT;
+        p->emittersPerPoint = asked > 0 ? asked : VPL_EMITTERS_PER_POINT;
         vplDecide(p, "emitter-samples", "for each point a tree chooses %d of the %d lights",
                   p->emittersPerPoint, p->emitterCount);
     }

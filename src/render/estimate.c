@@ -243,7 +243,7 @@ static bool isUndone(const vplPlan* p)
 static Bytes emitterTrees(const vplPlan* p)
 {
     const vplTreesWanted wanted = vplTreesOf(p);
-    const double emitters = p->sceneEmitterCount, triangles = p->emittingTriangles;
+    const double emitters = p->emitterCount, triangles = p->emittingTriangles;
     const double chosen =
         (emitters >= wanted.emitters ? emitters : 0) + (triangles >= wanted.triangles ? triangles : 0);
     return (Bytes){sizeof(vplEmitterDef) * emitters + 32 * (emitters + triangles) + 120 * chosen,

@@ -23,9 +23,9 @@ static const double COMPACT_SHARE = 0.125;
 vplTreesWanted vplTreesOf(const vplPlan* p)
 {
     const bool hits = p->trianglesPerPoint > 0 && (p->compensates || p->gathers);
-    const int emitters = p->emittersPerPoint > 0               ? 1
+    const int emitters = p->emittersPerPoint > 0            ? 1
                          : p->compensates && p->emitterRays ? VPL_EMITTERS_OF_HIT + 1
-                                                             : INT32_MAX;
+                                                            : INT32_MAX;
     return p->options.method == VPL_METHOD_PATH
                ? (vplTreesWanted){VPL_PATH_EMITTERS_OF_TREE, VPL_PATH_TRIANGLES_OF_TREE}
                : (vplTreesWanted){emitters, hits || vplPixelsChooseTriangles(p) ? 1 : INT32_MAX};

@@ -218,16 +218,13 @@ static vplResult pose(const vplScene* scene, vplPlan* p)
     for (int i = 0; i < p->emitterCount; i++) {
         TRY(vplScene_PoseEmitter(scene, i, o->sequence.frame, &emitters[i]));
     }
-    p->emitters = p->sceneEmitters = emitters;
-    p->sceneEmitterCount = p->emitterCount;
-    const int wanted = o->lighting == VPL_LIGHTING_DOCUMENTED ? 0 : o->lights.emitterSamples;
-    if (wanted > 0 && wanted < p->emitterCount) {
-        TRY(sampleEmitters(p, wanted, &p->emitters, &p->emitterCount));
-    }
+    p->emitters = emitters;
     p->mapEmitters = p->emitters;
     p->mapEmitterCount = p->emitterCount;
-    return o->lighting == VPL_LIGHTING_PHYSICAL && p->emitterCount > VPL_MAPPED_EMITTERS
-               ? sampleEmitters(p, VPL_MAPPED_EMITTERS, &p->mapEmitters, &p->mapEmitterCount)
+    const int wanted = o->lights.emitterSamples;
+    const int most = wanted > 0 && wanted < VPL_MAPPED_EMITTERS ? wanted : VPL_MAPPED_EMITTERS;
+    return o->lighting == VPL_LIGHTING_PHYSICAL && p->emitterCount > most
+               ? sampleEmitters(p, most, &p->mapEmitters, &p->mapEmitterCount)
                : VPL_SUCCESS;
 }
 

@@ -71,7 +71,7 @@ static bool needsEmitterTrees(const vplPlan* p, char* why)
     if (!asks) {
         return because(why, false, "%s", NOT_DIRECT);
     }
-    const bool emitters = p->sceneEmitterCount >= wanted.emitters,
+    const bool emitters = p->emitterCount >= wanted.emitters,
                triangles = p->emittingTriangles >= wanted.triangles;
     if (!emitters && !triangles) {
         return because(why, false, "there are few lights to choose from");

@@ -9,7 +9,6 @@
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 #include "scene/scene.h"
-#include "shading/shading.h"
 
 #include <math.h>
 
@@ -60,24 +59,16 @@ enum { VERY_FEW = 60 };
 // Rays per pixel that gather the light of few groups, in a tenth of the time that light at the vertices of all triangles takes.
 enum { COARSE_GATHER = 2 };
 
-// A coarse picture is lit by a sample of the emitters if there are more than this.
-enum { FEW_EMITTERS = 16 };
-
-static int countEmitters(const vplRenderer* r)
-{
-    const int asked = r->asked.lights.emitterSamples, all = vplScene_GetEmitterCount(r->runner.run.scene);
-    return asked > 0 && asked < all ? asked : all;
-}
+// If there are more than FEW_EMITTERS, a tree chooses COARSE_CHOICES of them for each point of a coarse picture.
+enum { FEW_EMITTERS = 16, COARSE_CHOICES = 4 };
 
 // Fewer lights and patches by a factor, no smooth edges and small shadow maps.
 static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 {
     *o = r->asked;
-    const int emitters = countEmitters(r);
-    if (emitters > FEW_EMITTERS) {
-        const double fits =
-            r->plan != NULL && !r->coarse ? FIRST_SHARE * vplTimeLeft(r) / r->plan->firstMs : 1;
-        o->lights.emitterSamples = (int)fmax(FEW_EMITTERS, ceil(fmin(share, fits) * emitters));
+    if (vplScene_GetEmitterCount(r->runner.run.scene) > FEW_EMITTERS &&
+        (o->lights.emitterSamples == 0 || o->lights.emitterSamples > COARSE_CHOICES)) {
+        o->lights.emitterSamples = COARSE_CHOICES;
     }
     o->stop.budgetMs =
         o->method == VPL_METHOD_RADIOSITY ? o->stop.budgetMs : 0; // which it may not be able to hold
@@ -104,12 +95,10 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->radiosity.gather = 0;
 }
 
-// True if the planner may light the picture by patches that cost at most so many rays. A coarse plan with a sample of the emitters does not
-// tell how many there are: then it may not.
+// True if the planner may light the picture by patches that cost at most so many rays.
 static bool suitsPatches(const vplRenderer* r, double rays, int* gatherOut)
 {
-    return vplHasTimeAlone(r) && (r->plan->options.lights.emitterSamples == 0 || !r->coarse) &&
-           vplPatchesSuitTime(&r->runner, r->plan, &r->asked, rays, gatherOut);
+    return vplHasTimeAlone(r) && vplPatchesSuitTime(&r->runner, r->plan, &r->asked, rays, gatherOut);
 }
 
 vplResult vplRenderer_PlanFirst(vplRenderer* r)
@@ -146,22 +135,28 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
 // processor instead of 1.7. Times that are foreseen are wrong by some tenths.
 static const double TIMES_OF_EDGES = 2.5;
 
-// After a coarse picture with a sample of the emitters the next has as many as 0.7 of the time is enough for. Its edges are
-// not smooth, because few bright emitters have many rims of shadows. If all emitters light the hits of short rays, these do not
-// compensate the clamp, because they would take several times as long as the picture.
+// After a coarse picture for which few emitters were chosen the next has as many as 0.7 of the time is enough for: those that were
+// asked for, or all without smooth edges, or as many choices as fit.
 static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
 {
-    const double spent = vplClockMs() - r->planStart, before = r->plan->options.lights.emitterSamples;
-    const double fits = before * fmax(1, 0.7 * vplTimeLeft(r) / fmax(spent, 1)), all = countEmitters(r);
-    if (before > 0 && fits < TIMES_OF_EDGES * all) {
-        o->lights.emitterSamples = (int)fmin(fits, all);
-        o->output.antialias = 1;
-        if (o->lights.emitterSamples <= VPL_EMITTERS_OF_HIT) {
-            o->lights.compensation = VPL_COMPENSATION_NONE;
-        }
-        vplLog(r->runner.run.context, VPL_LOG_INFO, "%d of the scene's %d lights stand for all in this time",
-               o->lights.emitterSamples, vplScene_GetEmitterCount(r->runner.run.scene));
+    const int all = r->plan->emitterCount, before = r->plan->emittersPerPoint;
+    const int asked = o->lights.emitterSamples > 0 ? o->lights.emitterSamples
+                      : all > VPL_MOST_EMITTERS    ? VPL_EMITTERS_PER_POINT
+                                                   : 0;
+    const double spent = vplClockMs() - r->planStart;
+    const double fits = before * fmax(1, 0.7 * vplTimeLeft(r) / fmax(spent, 1)),
+                 rays = VPL_CHOICE_WORK * fits;
+    if (before == 0 || (asked > 0 ? fits >= asked : rays >= TIMES_OF_EDGES * all)) {
+        return;
     }
+    if (asked == 0 && rays >= all) {
+        o->output.antialias = 1;
+        return;
+    }
+    o->lights.emitterSamples = (int)fits;
+    vplLog(r->runner.run.context, VPL_LOG_INFO,
+           "%d of the scene's %d lights are chosen for each point in this time", o->lights.emitterSamples,
+           all);
 }
 
 // After a coarse picture of radiosity the next has as many patches as half of the time is enough for, where the time

@@ -87,14 +87,12 @@ void vplDestroyEmitterMaps(void* result)
 
 // ---- trees
 
-// Paths ask the emitters of the scene, also where other methods sample them.
 vplResult vplMakeEmitterTrees(const vplRun* run, void** resultOut)
 {
     const vplPlan* p = run->plan;
-    const bool paths = p->options.method == VPL_METHOD_PATH;
     vplEmitterTrees* trees = NULL;
-    TRY(vplEmitterTrees_Create(run->results[VPL_STAGE_GEOMETRY], paths ? p->sceneEmitters : p->emitters,
-                               paths ? p->sceneEmitterCount : p->emitterCount, vplTreesOf(p), &trees));
+    TRY(vplEmitterTrees_Create(run->results[VPL_STAGE_GEOMETRY], p->emitters, p->emitterCount, vplTreesOf(p),
+                               &trees));
     *resultOut = trees;
     return VPL_SUCCESS;
 }

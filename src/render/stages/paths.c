@@ -29,9 +29,8 @@ vplPathDef vplDescribePaths(const vplPlan* plan, vplShow show)
     const vplRenderOptions* o = &plan->options;
     vplPathDef def = vplDefaultPathDef();
     def.camera = &plan->camera;
-    def.emitterCount =
-        plan->sceneEmitterCount; // also where other methods sample them: these paths tell their error
-    def.emitters = plan->sceneEmitters;
+    def.emitterCount = plan->emitterCount;
+    def.emitters = plan->emitters;
     def.width = o->output.width;
     def.height = o->output.height;
     def.seed = o->seed;
