@@ -2,6 +2,7 @@
 // Tests of --method auto where it chooses radiosity for an error: in which scenes, and how it goes on.
 #include "shapes.h"
 
+#include "math/vec.h"
 #include "render/renderer.h"
 
 static vplRenderOptions optionsFor(double error)
@@ -78,6 +79,48 @@ TEST(PatchesAreNotChosenAgainstTheOptionsOrTheMemory, 1)
                               64 << 20); // form factors of 3,675 patches would be more than a third of it
     assert_int_equal(methodFor(scene, &o), VPL_METHOD_KELLER);
     vplScene_Destroy(scene);
+}
+
+// A loft with 1,000 point lights, in pictures of 57,600 pixels.
+static vplRenderOptions plannedForLamps(vplContext* context, int lamps, double error)
+{
+    vplScene* scene = openScene(context, "examples/scenes/loft.json");
+    vplEmitterDef lamp = *vplScene_GetEmitter(scene, 0);
+    lamp.type = VPL_EMITTER_POINT;
+    for (int i = vplScene_GetEmitterCount(scene); i < lamps; i++) {
+        int added;
+        lamp.position = vplVec(0.3f * (float)(i % 10) - 1.5f, 1 + 0.1f * (float)(i / 100),
+                               0.3f * (float)(i / 10 % 10) - 1.5f);
+        assert_int_equal(vplScene_AddEmitter(scene, &lamp, &added), VPL_SUCCESS);
+    }
+    vplRenderOptions o = optionsFor(error);
+    o.output.width = 320;
+    o.output.height = 180;
+    o = planned(scene, &o);
+    vplScene_Destroy(scene);
+    return o;
+}
+
+// Large errors ask some of many lights at each point. Small ones begin with patches, which hardly count beside the shadow rays of so
+// many lights, but not with fewer lights: the loft has 492 triangles.
+TEST(ManyLightsHaveAPlanForEachError, 1)
+{
+    static const struct {
+        int lamps;
+        double error;
+        vplMethod method;
+        int emitterSamples, antialias;
+    } ROWS[] = {{1000, 0.2, VPL_METHOD_KELLER, 32, 4},     {1000, 0.1, VPL_METHOD_KELLER, 0, 2},
+                {1000, 0.05, VPL_METHOD_RADIOSITY, 0, 16}, {100, 0.2, VPL_METHOD_KELLER, 0, 4},
+                {100, 0.05, VPL_METHOD_KELLER, 0, 16},     {1000, 0, VPL_METHOD_KELLER, 0, 8}};
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        const vplRenderOptions o = plannedForLamps(context, ROWS[i].lamps, ROWS[i].error);
+        print_message("%d lights at %g: method %d, %d of them, %d samples\n", ROWS[i].lamps, ROWS[i].error,
+                      (int)o.method, o.lights.emitterSamples, o.output.antialias);
+        assert_int_equal(o.method, ROWS[i].method);
+        assert_int_equal(o.lights.emitterSamples, ROWS[i].emitterSamples);
+        assert_int_equal(o.output.antialias, ROWS[i].antialias);
+    }
 }
 
 // A room whose walls emit has no few points that could stand for them.

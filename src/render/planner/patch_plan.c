@@ -12,6 +12,7 @@
 enum {
     FEW_TRIANGLES = 40,   // of a scene that patches suit
     FEW_EMITTERS = 16,    // each takes a shadow ray per pixel and side
+    MANY_EMITTERS = 128,  // their direct light may take so long that patches hardly count
     PIXELS_PER_PATCH = 10 // in smaller pictures a pass of virtual lights is cheaper
 };
 
@@ -30,11 +31,33 @@ double vplMostPatches(const vplContext* context)
     return sqrt((limit > 0 && limit < most ? limit : most) / (3 * sizeof(float)));
 }
 
-// True if light comes from a few small emitters.
-static bool hasFewEmitters(const vplRunner* r, const vplPlan* p)
+// Rays of form factors over the square of the number of patches (flat, loft, room: 0.9 to 1.2).
+static const double PAIR_RAYS = 1.2;
+
+// A triangle is cut or grouped in the time of so many rays (furnished).
+enum { TRIANGLE_RAYS = 60 };
+
+// Patches hardly count if they take this share of the time that each pixel's shadow rays to emitters take. For larger errors than
+// SMALL_ERROR direct light takes less time: edges have fewer samples, or each pixel asks some emitters only.
+static const double SMALL_SHARE = 0.1, SMALL_ERROR = 0.08;
+
+static bool areSmallPart(const vplRunner* r, const vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    return p->emitterCount <= FEW_EMITTERS && g->emittingArea < VPL_MOST_LAMPS * g->area &&
+    const vplRenderOptions* o = &p->options;
+    const double pixels = (double)o->output.width * o->output.height;
+    const double rays =
+        PAIR_RAYS * VPL_FIRST_PATCHES * VPL_FIRST_PATCHES + (double)TRIANGLE_RAYS * g->triangleCount;
+    return o->stop.maxError > 0 && o->stop.maxError < SMALL_ERROR && p->emitterCount >= MANY_EMITTERS &&
+           g->triangleCount <= VPL_FIRST_PATCHES && rays <= SMALL_SHARE * pixels * p->emitterCount;
+}
+
+// True if light comes from emitters that are small and few, or whose direct light takes most of the time.
+static bool suitEmitters(const vplRunner* r, const vplPlan* p)
+{
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    return (p->emitterCount <= FEW_EMITTERS || areSmallPart(r, p)) &&
+           g->emittingArea < VPL_MOST_LAMPS * g->area &&
            vplScene_GetEnvironment(r->run.scene)->type == VPL_ENVIRONMENT_NONE;
 }
 
@@ -43,12 +66,14 @@ static bool hasFewEmitters(const vplRunner* r, const vplPlan* p)
 static const double MOST_REACH = 0.9;
 
 // Patches are quicker in plain scenes only: room, room-area, closed-room, cornell-area and cornell-spot. With more triangles (loft)
-// or with textures 2 % of error takes 1.3 and 10 times the time of virtual lights.
+// or with textures 2 % of error takes 1.3 and 10 times the time of virtual lights. Where direct light takes most of the time, scenes of some
+// hundred triangles are plain, too: 2 % takes 12 and 36 s with 1,000 lamps by virtual lights, 6 to 12 by
+// patches, and 5 % 4.4 to 4.8 and 4.6, of which 2 % are left.
 static bool isPlain(const vplRunner* r, const vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    return g->triangleCount <= FEW_TRIANGLES && r->run.scene->textureCount == 0 && p->look.lights > 0 &&
-           p->look.reaching >= MOST_REACH;
+    return (g->triangleCount <= FEW_TRIANGLES || areSmallPart(r, p)) && r->run.scene->textureCount == 0 &&
+           p->look.lights > 0 && p->look.reaching >= MOST_REACH;
 }
 
 bool vplMayChoosePatches(const vplRenderOptions* o)
@@ -57,22 +82,16 @@ bool vplMayChoosePatches(const vplRenderOptions* o)
     return (methods & VPL_USE_RADIOSITY) != 0 && (methods & VPL_USE_KELLER) != 0;
 }
 
-// True if the options allow radiosity, and only a few small emitters light the scene.
+// True if the options allow radiosity, and the emitters of the scene suit it.
 static bool canUsePatches(const vplRunner* r, const vplPlan* p, const vplRenderOptions* o)
 {
     return o->output.show == VPL_SHOW_PICTURE && o->lighting == VPL_LIGHTING_PHYSICAL &&
-           vplMayChoosePatches(o) && hasFewEmitters(r, p);
+           vplMayChoosePatches(o) && suitEmitters(r, p);
 }
 
 // ---- a first try of patches in scenes that are not plain
 
-enum {
-    TRIANGLE_RAYS = 60, // a triangle is cut or grouped in the time of so many rays (furnished)
-    PIXEL_RAYS = 2      // shadow rays from a pixel to an emitter
-};
-
-// Rays of form factors over the square of the number of patches (flat, loft, room: 0.9 to 1.2).
-static const double PAIR_RAYS = 1.2;
+enum { PIXEL_RAYS = 2 }; // shadow rays from a pixel to an emitter
 
 // True if `count` patches, whose light pixels gather by `gather` rays, are foreseen to cost at most as much as `rays` rays.
 static bool fitInto(const vplRunner* r, const vplPlan* p, const vplRenderOptions* o, double count, int gather,
