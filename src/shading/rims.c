@@ -21,16 +21,16 @@ typedef enum PointKind {
     SAMPLE  // a sample of a pixel
 } PointKind;
 
-// More emitters are many.
+// Where more emitters than this cast shadow rays, few samples stand for all.
 enum { FEW_EMITTERS = 64 };
 
-// Samples that stand for all 8 or 16: one in each quarter of the columns, and one in each quarter of the rows.
+// Four of 8 or 16 samples. Of all sets of four, these and the centre find best what edges in random directions cover.
 enum { FOUR_OF_8 = 1 << 0 | 1 << 2 | 1 << 5 | 1 << 7, FOUR_OF_16 = 1 << 1 | 1 << 3 | 1 << 12 | 1 << 14 };
 
 typedef struct Rims {
     const vplShading* shading;
     const vplTile* tile;
-    uint16_t few;           // samples that stand for all
+    uint16_t few;           // samples that stand for all; all bits are set where all samples are lit
     const uint16_t* own;    // samples of each element that show the surface in its centre
     float light[RIM_CELLS]; // from emitters in centres of pixels; NAN where nothing is seen
     uint8_t listed[RIM_CELLS];
@@ -112,13 +112,11 @@ static uint32_t litSamples(const Rims* r, int cell)
     return __builtin_popcount(few) > 1 ? few : own;
 }
 
-// The share of a pixel's samples, among them the centre, that each lit one stands for.
-static float shareOf(const Rims* r, int cell)
+// The number of a pixel's samples that each lit one stands for. The centre is one more on both sides.
+static float weightOf(const Rims* r, int cell)
 {
     const uint32_t own = r->own[vplElementOf(xOf(cell), yOf(cell))];
-    const int lit = __builtin_popcount(litSamples(r, cell));
-    const float each = (float)(__builtin_popcount(own) + 1) / (float)(lit + 1); // the centre is one more
-    return each / (float)(r->tile->sampleCount + 1);
+    return (float)(__builtin_popcount(own) + 1) / (float)(__builtin_popcount(litSamples(r, cell)) + 1);
 }
 
 // Lists the neighbours of a pixel whose samples differ.
@@ -152,7 +150,7 @@ static void flush(Rims* r)
             list(r, cell);
         } else if (r->kind == SAMPLE) {
             const vplReflector* to = &vplFacetCache_Get(s, q->block.points.triangle[l], q->cache)->reflector;
-            const float share = shareOf(r, cell);
+            const float share = weightOf(r, cell) / (float)(r->tile->sampleCount + 1);
             double factor[3];
             vplFactorAtPoint(s, to, q->block.points.triangle[l], vplSurface_At(&q->block.surface, l), factor);
             for (int c = 0; c < 3; c++) {
@@ -270,7 +268,8 @@ static void smoothPixel(Rims* r, int cell)
     const vplTileSums* sums = tile->scratch;
     const int at[2] = {xOf(cell), yOf(cell)}, element = vplElementOf(at[0], at[1]);
     const vplReflector* to = &vplFacetCache_Get(s, triangleOf(r, cell), r->queue.cache)->reflector;
-    const float share = (float)__builtin_popcount(litSamples(r, cell)) * shareOf(r, cell);
+    const uint32_t lit = litSamples(r, cell);
+    const float share = (float)__builtin_popcount(lit) * weightOf(r, cell) / (float)(tile->sampleCount + 1);
     float* pixel = vplPixelOf(s, tile->x + at[0], tile->y + at[1]);
     double factor[3];
     vplFactorInPixel(s, to, triangleOf(r, cell), tile->x + at[0], tile->y + at[1], factor);
@@ -278,13 +277,13 @@ static void smoothPixel(Rims* r, int cell)
         const float rest = pixel[c] - share * (float)(factor[c] * (double)sums->emitted[c][element]);
         pixel[c] = rest > 0 ? rest : 0; // rounding may leave less than nothing
     }
-    for (uint32_t left = litSamples(r, cell); left != 0; left &= left - 1) {
+    for (uint32_t left = lit; left != 0; left &= left - 1) {
         const int i = __builtin_ctz(left);
         push(r, cell, tile->samples[i][element], at, vplSubPixel_OfSample(i, tile->sampleCount));
     }
 }
 
-// The samples of a pixel that stand for all of them.
+// The samples that stand for all of a pixel.
 static uint16_t fewSamples(const vplDirectLight* direct, int samples)
 {
     bool many = direct->emitterCount > FEW_EMITTERS && direct->shadows == NULL && direct->maps == NULL;
