@@ -7,6 +7,7 @@
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
 #include "lights/light_set.h"
+#include "math/scalar.h"
 #include "reference/path_scene.h"
 #include "render/plan.h"
 #include "shading/shading.h"
@@ -29,6 +30,18 @@ vplTreesWanted vplTreesOf(const vplPlan* p)
     return p->options.method == VPL_METHOD_PATH
                ? (vplTreesWanted){VPL_PATH_EMITTERS_OF_TREE, VPL_PATH_TRIANGLES_OF_TREE}
                : (vplTreesWanted){emitters, hits || vplPixelsChooseTriangles(p) ? 1 : INT32_MAX};
+}
+
+double vplAskedEmitters(const vplPlan* p)
+{
+    double sum = 0;
+    for (int i = 0; i < p->emitterCount; i++) {
+        const vplEmitterDef* e = &p->emitters[i];
+        double sine, cosine;
+        vplSinCos(e->outerAngle, &sine, &cosine);
+        sum += e->type == VPL_EMITTER_SPOT ? 0.5 - 0.5 * cosine : 1;
+    }
+    return sum;
 }
 
 bool vplPixelsChooseTriangles(const vplPlan* p)

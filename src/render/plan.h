@@ -84,6 +84,9 @@ vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 // The least numbers of emitters and of triangles that emit from which points choose by a tree.
 vplTreesWanted vplTreesOf(const vplPlan* plan);
 
+// The mean number of emitters that a point asks by shadow rays, if all light it: a spot lights what is inside of its cone.
+double vplAskedEmitters(const vplPlan* plan);
+
 // Decides whether emitting triangles light pixels by samples on them or by a tree.
 vplResult vplDecideTriangles(const vplRunner* runner, vplPlan* plan);
 

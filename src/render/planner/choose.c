@@ -104,6 +104,7 @@ static void chooseLights(const vplRunner* r, vplPlan* p, double error)
     vplRenderOptions* o = &p->options;
     const bool large = (double)o->output.width * o->output.height >= MANY_PIXELS;
     const bool goes = o->stop.budgetMs > 0 || o->stop.maxError > 0;
+    const double emitters = vplAskedEmitters(p);
     if (o->particles.count < 0 && goes) {
         chooseParticles(r, p);
     }
@@ -111,12 +112,11 @@ static void chooseLights(const vplRunner* r, vplPlan* p, double error)
         o->pipeline.interleave = 4;
         vplDecide(p, "interleave", "so small an error allows little blur");
     }
-    if (o->lights.emitterSamples == 0 && o->stop.maxError >= LARGE_ERROR &&
-        p->emitterCount >= MANY_EMITTERS) {
+    if (o->lights.emitterSamples == 0 && o->stop.maxError >= LARGE_ERROR && emitters >= MANY_EMITTERS) {
         o->lights.emitterSamples = EMITTERS_OF_LARGE_ERROR;
     }
-    if (o->output.antialias == 8 && o->stop.maxError > 0 && error >= 0.1 &&
-        p->emitterCount >= MANY_EMITTERS && o->lights.emitterSamples == 0) {
+    if (o->output.antialias == 8 && o->stop.maxError > 0 && error >= 0.1 && emitters >= MANY_EMITTERS &&
+        o->lights.emitterSamples == 0) {
         o->output.antialias = 2;
         vplDecide(p, "antialias", "many lights have many rims of shadows, where paths smooth what errs most");
     }

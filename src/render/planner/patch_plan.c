@@ -46,10 +46,11 @@ static bool areSmallPart(const vplRunner* r, const vplPlan* p)
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const vplRenderOptions* o = &p->options;
     const double pixels = (double)o->output.width * o->output.height;
+    const double emitters = vplAskedEmitters(p);
     const double rays =
         PAIR_RAYS * VPL_FIRST_PATCHES * VPL_FIRST_PATCHES + (double)TRIANGLE_RAYS * g->triangleCount;
-    return o->stop.maxError > 0 && o->stop.maxError < SMALL_ERROR && p->emitterCount >= MANY_EMITTERS &&
-           g->triangleCount <= VPL_FIRST_PATCHES && rays <= SMALL_SHARE * pixels * p->emitterCount;
+    return o->stop.maxError > 0 && o->stop.maxError < SMALL_ERROR && emitters >= MANY_EMITTERS &&
+           g->triangleCount <= VPL_FIRST_PATCHES && rays <= SMALL_SHARE * pixels * emitters;
 }
 
 // True if light comes from emitters that are small and few, or whose direct light takes most of the time.

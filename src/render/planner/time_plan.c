@@ -139,10 +139,11 @@ static const double TIMES_OF_EDGES = 2.5;
 // asked for, or all without smooth edges, or as many choices as fit.
 static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
 {
-    const int all = r->plan->emitterCount, before = r->plan->emittersPerPoint;
+    const int count = r->plan->emitterCount, before = r->plan->emittersPerPoint;
     const int asked = o->lights.emitterSamples > 0 ? o->lights.emitterSamples
-                      : all > VPL_MOST_EMITTERS    ? VPL_EMITTERS_PER_POINT
+                      : count > VPL_MOST_EMITTERS  ? VPL_EMITTERS_PER_POINT
                                                    : 0;
+    const double all = vplAskedEmitters(r->plan);
     const double spent = vplClockMs() - r->planStart;
     const double fits = before * fmax(1, 0.7 * vplTimeLeft(r) / fmax(spent, 1)),
                  rays = VPL_CHOICE_WORK * fits;
@@ -156,7 +157,7 @@ static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
     o->lights.emitterSamples = (int)fits;
     vplLog(r->runner.run.context, VPL_LOG_INFO,
            "%d of the scene's %d lights are chosen for each point in this time", o->lights.emitterSamples,
-           all);
+           count);
 }
 
 // After a coarse picture of radiosity the next has as many patches as half of the time is enough for, where the time
