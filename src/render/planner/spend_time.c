@@ -22,7 +22,19 @@ static vplResult judge(vplRenderer* r, double share)
 
 // ---- other plans
 
-// The least squared error for the rays that the time is enough for.
+// The time of a path through one pixel, as the truth's took.
+static double timeOfPath(const vplRenderer* r)
+{
+    double ms = 0;
+    for (int i = 0; i < r->runner.stats.stageCount; i++) {
+        const vplStageTime* stage = &r->runner.stats.stages[i];
+        ms = strcmp(stage->name, "truth") == 0 ? stage->ms : ms;
+    }
+    return ms / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
+}
+
+// The least squared error for the time that is left. A path takes as long as one of the truth; its rays would not tell, because rays of many
+// pixels to one lamp are far quicker.
 static vplResult choosePlan(vplRenderer* r, bool* doneOut)
 {
     const vplErrorState s = vplErrorState_Of(r);
@@ -30,7 +42,7 @@ static vplResult choosePlan(vplRenderer* r, bool* doneOut)
     const double finish = s.bias + s.noise * s.spent / (s.spent + rays);
     const double finer =
         s.finer > 0 ? s.finerBias * s.bias + s.finerCost * s.noise * s.spent / rays : INFINITY;
-    const double paths = s.paths / rays;
+    const double paths = s.paths / s.path * timeOfPath(r) / vplTimeLeft(r);
     if (paths < 0.8 * finish && paths < finer) {
         return vplGoOnWithPaths(r, doneOut);
     }
@@ -43,17 +55,6 @@ enum { FIRST_PATHS = 16 };
 
 // Where the truth is uncertain, so much of its standard error counts as error.
 static const double DOUBT = 0.5;
-
-// The time of a path through one pixel, as the truth's took.
-static double timeOfPath(const vplRenderer* r)
-{
-    double ms = 0;
-    for (int i = 0; i < r->runner.stats.stageCount; i++) {
-        const vplStageTime* stage = &r->runner.stats.stages[i];
-        ms = strcmp(stage->name, "truth") == 0 ? stage->ms : ms;
-    }
-    return ms / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
-}
 
 // A way to spend the rest of the time: passes, and then paths through pixels at edges.
 typedef struct Closing {
