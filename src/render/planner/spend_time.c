@@ -33,8 +33,13 @@ static double timeOfPath(const vplRenderer* r)
     return ms / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
 }
 
-// The least squared error for the time that is left. A path takes as long as one of the truth; its rays would not tell, because rays of many
-// pixels to one lamp are far quicker.
+// Path tracing must promise this share of the squared error that virtual lights leave, by the rays and by the time of the truth's paths: rays
+// of many pixels to one lamp are far quicker than those of paths, few paths of the truth tell too little of the variance, and at the end of
+// the time paths at edges halve the error of virtual lights. In 5 s path tracing left 8.6 % of error in conference-spot, 7.9 in sponza-sun,
+// 5.5 with 1,000 lamps and 5.2 in textured-room; virtual lights leave 4.6, 3.8, 3.8 and 1.0.
+static const double SHARE_FOR_PATHS = 0.5;
+
+// The least squared error for the time that is left.
 static vplResult choosePlan(vplRenderer* r, bool* doneOut)
 {
     const vplErrorState s = vplErrorState_Of(r);
@@ -42,8 +47,8 @@ static vplResult choosePlan(vplRenderer* r, bool* doneOut)
     const double finish = s.bias + s.noise * s.spent / (s.spent + rays);
     const double finer =
         s.finer > 0 ? s.finerBias * s.bias + s.finerCost * s.noise * s.spent / rays : INFINITY;
-    const double paths = s.paths / s.path * timeOfPath(r) / vplTimeLeft(r);
-    if (paths < 0.8 * finish && paths < finer) {
+    const double paths = fmax(s.paths / rays, s.paths / s.path * timeOfPath(r) / vplTimeLeft(r));
+    if (paths < SHARE_FOR_PATHS * fmin(finish, finer)) {
         return vplGoOnWithPaths(r, doneOut);
     }
     return finer < 0.8 * finish ? vplGoOnFiner(r, 1, doneOut) : VPL_SUCCESS;
