@@ -232,6 +232,15 @@ vplVec3 vectorOf(const Table* table, int row, const char* prefix)
     return (vplVec3){v[0], v[1], v[2]};
 }
 
+void assertRefused(vplResult result, vplResult wanted, const char* said)
+{
+    const char* message = takeMessage();
+    if (result != wanted || strstr(message, said) == NULL) {
+        fail_msg("%s, \"%s\" instead of %s, \"%s\"", vplResult_GetName(result), message,
+                 vplResult_GetName(wanted), said);
+    }
+}
+
 void assertNear(double value, double wanted, double tolerance, const char* what, int row)
 {
     if (!(fabs(value - wanted) <= tolerance)) {

@@ -77,6 +77,9 @@ void closeTestContext(vplContext* context);
 // Returns the last message logged through any test context; empty if there was none since the last call.
 const char* takeMessage(void);
 
+// Fails unless a call gave this result and its message contains `said`.
+void assertRefused(vplResult result, vplResult wanted, const char* said);
+
 // A table from tests/data without its comments. Cells are read by column name.
 typedef struct Table {
     char* text;

@@ -96,8 +96,8 @@ TEST(AFinishedRenderGoesOnToMore, 1, SLOW)
 }
 
 // Loading fails with a sentence, and the renderer then renders as if nothing had been loaded.
-static void assertRefused(const vplScene* scene, const vplRenderOptions* o, vplResult wanted,
-                          const char* sentence)
+static void assertNotLoaded(const vplScene* scene, const vplRenderOptions* o, vplResult wanted,
+                            const char* sentence)
 {
     vplRenderer* r;
     bool done = false;
@@ -117,19 +117,20 @@ TEST(AStateOfAnotherRenderIsRefused, 1)
     vplRenderOptions o = passCase(context, 2, &scene), path = passCase(context, 0, &other), changed = o;
     vplRenderer* r;
     bool done;
-    assertRefused(scene, &o, VPL_FILE_ERROR, "cannot open");
+    assertNotLoaded(scene, &o, VPL_FILE_ERROR, "cannot open");
     savePasses(scene, &o, 1);
     changed.seed = 7;
-    assertRefused(scene, &changed, VPL_INVALID_ARGUMENT,
-                  "saved with --seed 0, but this render has 7; only passes");
+    assertNotLoaded(scene, &changed, VPL_INVALID_ARGUMENT,
+                    "saved with --seed 0, but this render has 7; only passes");
     changed = o;
     changed.lights.minDistance = 0.25f; // and not auto
-    assertRefused(scene, &changed, VPL_INVALID_ARGUMENT,
-                  "saved with --min-distance auto, but this render has 0.25");
-    assertRefused(scene, &path, VPL_INVALID_ARGUMENT, "saved with --method keller, but this render has path");
+    assertNotLoaded(scene, &changed, VPL_INVALID_ARGUMENT,
+                    "saved with --min-distance auto, but this render has 0.25");
+    assertNotLoaded(scene, &path, VPL_INVALID_ARGUMENT,
+                    "saved with --method keller, but this render has path");
     changed = o;
     changed.stop.passes = 0;
-    assertRefused(scene, &changed, VPL_INVALID_ARGUMENT, "say when it ends");
+    assertNotLoaded(scene, &changed, VPL_INVALID_ARGUMENT, "say when it ends");
     assert_int_equal(vplRenderer_Create(scene, &changed, &r), VPL_SUCCESS);
     assert_false(vplRenderer_HasState(r));
     assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
@@ -137,7 +138,7 @@ TEST(AStateOfAnotherRenderIsRefused, 1)
     assert_non_null(strstr(takeMessage(), "has no state to save"));
     vplRenderer_Destroy(r);
     addMaterial(scene, (vplRgb){0.25f, 0.5f, 0.75f}, 0);
-    assertRefused(scene, &o, VPL_INVALID_ARGUMENT, "saved with another scene");
+    assertNotLoaded(scene, &o, VPL_INVALID_ARGUMENT, "saved with another scene");
     assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
     assert_true(vplRenderer_HasState(r));
     assert_int_equal(vplRenderer_Save(r, stateFile()), VPL_INVALID_ARGUMENT);

@@ -197,7 +197,7 @@ TEST_ALONE(NamesOfTheCommandLineMeanTheseFields)
 
 // ---- bad values
 
-static void assertRefused(const char* name, const char* value)
+static void assertOptionRefused(const char* name, const char* value)
 {
     const Options before = vplDefaultRenderOptions();
     Options options = before;
@@ -222,7 +222,7 @@ TEST_ALONE(NoOptionTakesNonsense)
     const vplOption* table = vplGetOptions(&count);
     for (int i = 0; i < count; i++) {
         for (size_t k = 0; k < sizeof nonsense / sizeof *nonsense && table[i].kind != VPL_OPTION_PART; k++) {
-            assertRefused(table[i].name, nonsense[k]);
+            assertOptionRefused(table[i].name, nonsense[k]);
         }
     }
 }
@@ -240,14 +240,14 @@ TEST_ALONE(NoNumberBeyondItsRangeIsTaken)
         }
         snprintf(text, sizeof text, "%.17g",
                  whole ? table[i].low - 1 : table[i].low - 1e-9 * (1 + fabs(table[i].low)));
-        assertRefused(table[i].name, text);
+        assertOptionRefused(table[i].name, text);
         snprintf(text, sizeof text, "%.17g",
                  whole                           ? table[i].high + 1
                  : kind == VPL_OPTION_BELOW_AUTO ? table[i].high
                                                  : table[i].high * (1 + 1e-9));
-        assertRefused(table[i].name, text);
-        assertRefused(table[i].name, "99999999999999999999");
-        assertRefused(table[i].name, whole ? "1.5" : "inf");
+        assertOptionRefused(table[i].name, text);
+        assertOptionRefused(table[i].name, "99999999999999999999");
+        assertOptionRefused(table[i].name, whole ? "1.5" : "inf");
     }
 }
 
@@ -283,7 +283,7 @@ TEST_ALONE(BadValuesOfEachKindAreRefused)
                                          {"min-distance", "-1"},
                                          {"w1", "auto"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        assertRefused(bad[i][0], bad[i][1]);
+        assertOptionRefused(bad[i][0], bad[i][1]);
     }
 }
 

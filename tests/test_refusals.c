@@ -8,14 +8,6 @@
 
 #include <limits.h>
 
-static void assertRefused(vplResult result, vplResult wanted, const char* said)
-{
-    const char* message = takeMessage();
-    if (result != wanted || strstr(message, said) == NULL) {
-        fail_msg("%d \"%s\" instead of %d \"%s\"", (int)result, message, (int)wanted, said);
-    }
-}
-
 TEST(ReinhardsValuesAreChecked, 1)
 {
     vplImage* image;

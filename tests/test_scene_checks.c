@@ -24,12 +24,10 @@ static void setNumber(void* def, const BadNumber* bad)
 
 enum { UNTOUCHED = -7 }; // an index output's value before the call, and after a refusal
 
-static void assertRefused(vplResult result, const char* text, int index)
+static void assertUntouched(vplResult result, const char* text, int index)
 {
-    const char* message = takeMessage();
-    if (result != VPL_INVALID_ARGUMENT || strstr(message, text) == NULL || index != UNTOUCHED) {
-        fail_msg("%s, \"%s\" instead of a refusal with \"%s\"", vplResult_GetName(result), message, text);
-    }
+    assertRefused(result, VPL_INVALID_ARGUMENT, text);
+    assert_int_equal(index, UNTOUCHED);
 }
 
 static vplScene* emptyScene(vplContext* context)
@@ -62,11 +60,11 @@ TEST(CamerasAreChecked, 1)
         vplCameraDef def = vplDefaultCameraDef();
         int index = UNTOUCHED;
         setNumber(&def, &cases[i]);
-        assertRefused(vplScene_AddCamera(scene, &def, &index), cases[i].text, index);
+        assertUntouched(vplScene_AddCamera(scene, &def, &index), cases[i].text, index);
     }
     vplCameraDef def = vplDefaultCameraDef();
     def.up = (vplVec3){0, 0, -3};
-    assertRefused(vplScene_AddCamera(scene, &def, NULL), "vplCameraDef.up is parallel", UNTOUCHED);
+    assertUntouched(vplScene_AddCamera(scene, &def, NULL), "vplCameraDef.up is parallel", UNTOUCHED);
     assert_int_equal(vplScene_GetCameraCount(scene), 0);
     vplScene_Destroy(scene);
 }
@@ -90,7 +88,7 @@ TEST(MaterialsAreChecked, 1)
         vplMaterialDef def = vplDefaultMaterialDef();
         int index = UNTOUCHED;
         setNumber(&def, &cases[i]);
-        assertRefused(vplScene_AddMaterial(scene, &def, &index), cases[i].text, index);
+        assertUntouched(vplScene_AddMaterial(scene, &def, &index), cases[i].text, index);
     }
     vplMaterialDef def = vplDefaultMaterialDef();
     int first = -1, second = -1;
@@ -98,8 +96,8 @@ TEST(MaterialsAreChecked, 1)
     assert_int_equal(vplScene_AddMaterial(scene, &def, &second), VPL_SUCCESS); // unnamed ones do not collide
     def.name = "wood";
     assert_int_equal(vplScene_AddMaterial(scene, &def, NULL), VPL_SUCCESS);
-    assertRefused(vplScene_AddMaterial(scene, &def, NULL), "vplMaterialDef.name \"wood\" is taken",
-                  UNTOUCHED);
+    assertUntouched(vplScene_AddMaterial(scene, &def, NULL), "vplMaterialDef.name \"wood\" is taken",
+                    UNTOUCHED);
     assert_true(first == 0 && second == 1 && vplScene_GetMaterialCount(scene) == 3);
     vplScene_Destroy(scene);
 }
@@ -121,17 +119,17 @@ TEST(ObjectsAreChecked, 1)
         vplObjectDef def = vplDefaultObjectDef();
         int index = UNTOUCHED;
         setNumber(&def, &cases[i]);
-        assertRefused(vplScene_AddObject(scene, &def, &index), cases[i].text, index);
+        assertUntouched(vplScene_AddObject(scene, &def, &index), cases[i].text, index);
     }
     vplObjectDef flat = vplDefaultObjectDef(), unknown = flat, before = flat, beyond = flat;
     flat.transform.m[0] = flat.transform.m[1] = flat.transform.m[4] = flat.transform.m[5] = 1;
-    assertRefused(vplScene_AddObject(scene, &flat, NULL), "vplObjectDef.transform is singular", UNTOUCHED);
+    assertUntouched(vplScene_AddObject(scene, &flat, NULL), "vplObjectDef.transform is singular", UNTOUCHED);
     unknown.type = (vplObjectType)7;
-    assertRefused(vplScene_AddObject(scene, &unknown, NULL), "vplObjectDef.type is 7", UNTOUCHED);
+    assertUntouched(vplScene_AddObject(scene, &unknown, NULL), "vplObjectDef.type is 7", UNTOUCHED);
     before.material = -1;
-    assertRefused(vplScene_AddObject(scene, &before, NULL), "vplObjectDef.material is -1", UNTOUCHED);
+    assertUntouched(vplScene_AddObject(scene, &before, NULL), "vplObjectDef.material is -1", UNTOUCHED);
     beyond.material = 1;
-    assertRefused(vplScene_AddObject(scene, &beyond, NULL), "vplObjectDef.material is 1", UNTOUCHED);
+    assertUntouched(vplScene_AddObject(scene, &beyond, NULL), "vplObjectDef.material is 1", UNTOUCHED);
     assert_int_equal(vplScene_GetObjectCount(scene), 0);
     vplScene_Destroy(scene);
 }
@@ -157,11 +155,11 @@ TEST(EmittersAreChecked, 1)
         int index = UNTOUCHED;
         def.type = VPL_EMITTER_SPOT;
         setNumber(&def, &cases[i]);
-        assertRefused(vplScene_AddEmitter(scene, &def, &index), cases[i].text, index);
+        assertUntouched(vplScene_AddEmitter(scene, &def, &index), cases[i].text, index);
     }
     vplEmitterDef def = vplDefaultEmitterDef();
     def.type = (vplEmitterType)9;
-    assertRefused(vplScene_AddEmitter(scene, &def, NULL), "vplEmitterDef.type is 9", UNTOUCHED);
+    assertUntouched(vplScene_AddEmitter(scene, &def, NULL), "vplEmitterDef.type is 9", UNTOUCHED);
     assert_int_equal(vplScene_GetEmitterCount(scene), 0);
     vplScene_Destroy(scene);
 }
@@ -173,18 +171,18 @@ TEST(DefsThatWereNeverFilledInAreRefused, 1)
     vplMaterialDef material = {0};
     vplObjectDef object = {.transform = vplMat4_Identity()};
     vplEmitterDef emitter = {0};
-    assertRefused(vplScene_AddCamera(scene, &camera, NULL), "vplCameraDef was not made by its default",
-                  UNTOUCHED);
-    assertRefused(vplScene_AddMaterial(scene, &material, NULL), "vplMaterialDef was not made by its default",
-                  UNTOUCHED);
-    assertRefused(vplScene_AddObject(scene, &object, NULL), "vplObjectDef was not made by its default",
-                  UNTOUCHED);
-    assertRefused(vplScene_AddEmitter(scene, &emitter, NULL), "vplEmitterDef was not made by its default",
-                  UNTOUCHED);
+    assertUntouched(vplScene_AddCamera(scene, &camera, NULL), "vplCameraDef was not made by its default",
+                    UNTOUCHED);
+    assertUntouched(vplScene_AddMaterial(scene, &material, NULL),
+                    "vplMaterialDef was not made by its default", UNTOUCHED);
+    assertUntouched(vplScene_AddObject(scene, &object, NULL), "vplObjectDef was not made by its default",
+                    UNTOUCHED);
+    assertUntouched(vplScene_AddEmitter(scene, &emitter, NULL), "vplEmitterDef was not made by its default",
+                    UNTOUCHED);
     camera = vplDefaultCameraDef();
     camera.cookie++; // as that of a def of another type
-    assertRefused(vplScene_AddCamera(scene, &camera, NULL), "vplCameraDef was not made by its default",
-                  UNTOUCHED);
+    assertUntouched(vplScene_AddCamera(scene, &camera, NULL), "vplCameraDef was not made by its default",
+                    UNTOUCHED);
     vplScene_Destroy(scene);
 }
 
