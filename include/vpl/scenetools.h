@@ -112,8 +112,8 @@ const vplTransformKey* vplScene_GetObjectPath(const vplScene* scene, int object,
 vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vplCameraDef* defOut);
 vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut);
 
-// Hash of all that pictures depend on: cameras, textures, materials, meshes, objects, emitters and their paths, in
-// their order, without names, and the environment. The same in every process and on every machine; it takes a pass over the
+// Hash of all that a picture depends on: cameras and emitters with their paths, textures, materials, meshes and objects where
+// they stand now, in their order, without names, and the environment. The same in every process and on every machine; it takes a pass over the
 // scene's data.
 uint64_t vplScene_GetHash(const vplScene* scene);
 

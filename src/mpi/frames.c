@@ -96,11 +96,27 @@ static int takeFrame(void* user, int index, const uint8_t* bytes, size_t size)
 
 // ---- going on
 
-static uint64_t hashText(const char* text)
+static const uint64_t EMPTY_HASH = 0xcbf29ce484222325u;
+
+// FNV-1a.
+static uint64_t hashBytes(uint64_t hash, const void* bytes, size_t size)
 {
-    uint64_t hash = 0xcbf29ce484222325u; // FNV-1a
-    for (; *text != 0; text++) {
-        hash = (hash ^ (uint8_t)*text) * 0x100000001b3u;
+    for (size_t i = 0; i < size; i++) {
+        hash = (hash ^ ((const uint8_t*)bytes)[i]) * 0x100000001b3u;
+    }
+    return hash;
+}
+
+// The hash of a scene is of where its objects stand now, not of their paths.
+static uint64_t hashPaths(const vplScene* scene)
+{
+    uint64_t hash = EMPTY_HASH;
+    for (int i = 0; i < vplScene_GetObjectCount(scene); i++) {
+        int count;
+        const vplTransformKey* keys = vplScene_GetObjectPath(scene, i, &count);
+        if (keys != NULL) {
+            hash = hashBytes(hashBytes(hash, &i, sizeof i), keys, (size_t)count * sizeof *keys);
+        }
     }
     return hash;
 }
@@ -112,7 +128,8 @@ static void writeTitle(Frames* f)
     writeCommand(&a->render, words, sizeof words - 64);
     snprintf(words + strlen(words), 64, " exposure %a tonemap %d", a->exposure, a->tonemap);
     snprintf(f->title, sizeof f->title, "vpl-mpi frames %016llx %016llx\n",
-             (unsigned long long)vplScene_GetHash(f->scene), (unsigned long long)hashText(words));
+             (unsigned long long)vplScene_GetHash(f->scene),
+             (unsigned long long)hashBytes(hashPaths(f->scene), words, strlen(words)));
 }
 
 // Marks the frames that a journal names and whose files are there. *keptOut is the size of its whole lines.

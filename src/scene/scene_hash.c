@@ -122,36 +122,14 @@ static uint64_t addMesh(uint64_t state, const vplMeshDef* d)
     return state;
 }
 
-static uint64_t addTransform(uint64_t state, const vplMat4* m)
-{
-    for (int i = 0; i < 16; i++) {
-        state = addNumber(state, (double)m->m[i]);
-    }
-    return state;
-}
-
 static uint64_t addObject(uint64_t state, const vplObjectDef* d)
 {
     const int mesh = d->type == VPL_OBJECT_MESH ? d->mesh : -1;
     state = addInt(addInt(addInt(state, (int)d->type), d->material), mesh);
-    return addTransform(state, &d->transform);
-}
-
-// Scenes without paths of objects keep the hash that they had before there were any. The order in which paths were set does not matter.
-static uint64_t addMovers(uint64_t state, const vplScene* s)
-{
-    uint64_t sum = 0;
-    for (int i = 0; i < s->moverCount; i++) {
-        const vplTransformKey* keys = s->movers[i].track.keys;
-        uint64_t path = addInt(addInt(0, s->movers[i].object), s->movers[i].track.count);
-        for (int k = 0; k < s->movers[i].track.count; k++) {
-            path = addTransform(addNumber(path, keys[k].frame), &keys[k].transform);
-        }
-        sum += path;
+    for (int i = 0; i < 16; i++) {
+        state = addNumber(state, (double)d->transform.m[i]);
     }
-    return s->moverCount > 0
-               ? vplHashWords(state, (const uint32_t[2]){(uint32_t)sum, (uint32_t)(sum >> 32)}, 2)
-               : state;
+    return state;
 }
 
 // Scenes without an environment keep the hash that they had before there were environments. The sun is an emitter.
@@ -192,5 +170,5 @@ uint64_t vplScene_GetHash(const vplScene* s)
     for (int i = 0; i < s->emitterCount; i++) {
         state = addEmitter(state, &s->emitters[i]);
     }
-    return addEnvironment(addMovers(state, s), &s->environment);
+    return addEnvironment(state, &s->environment);
 }

@@ -163,6 +163,31 @@ refuses() { # CODE SENTENCE COMMAND...
     [ $got -eq "$code" ] && grep -q "$sentence" "$scratch/errors" && [ "$(grep -c '^vpl-mpi: ' "$scratch/errors")" -eq 1 ] ||
         { echo "exit code $got, must be $code; on standard error:"; cat "$scratch/errors"; return 1; }
 }
+# moving_triangle X: a glTF file in which a triangle moves by X, the bytes of a float as printf reads them.
+moving_triangle() {
+    zero='\000\000\000\000' one='\000\000\200\077'
+    data=$(printf "$zero$zero$zero$one$zero$zero$zero$one$zero$zero$one$zero$zero$zero$1$zero$zero" | base64 -w 0)
+    cat <<END
+{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,$data"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+{"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+{"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+{"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+"animations": [{"samplers": [{"input": 1, "output": 2}], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]}
+END
+}
+frames_of_another_path() {
+    moving_triangle '\000\000\200\077' >"$scratch/moves.gltf"
+    frames="--frames 0:2 --method direct --size 16x16 --quiet -o $scratch/moves.png"
+    ranks openmpi 2 render "$scratch/moves.gltf" $frames --checkpoint "$scratch/list" &&
+        ranks openmpi 2 render "$scratch/moves.gltf" $frames --resume "$scratch/list" || return 1
+    moving_triangle '\000\000\000\100' >"$scratch/moves.gltf"
+    refuses 2 "is no list of frames of this scene" ranks openmpi 2 render "$scratch/moves.gltf" $frames --resume "$scratch/list"
+}
+check FramesOfAnotherPathAreRefused frames_of_another_path
 for implementation in openmpi mpich; do
     check "OtherSceneIsRefused_$implementation" refuses 2 "scene or camera differ" ranks $implementation 2 render \
         examples/scenes/room.json ${options#* } -o "$scratch/no.pfm" --resume "$scratch/pieces"

@@ -68,8 +68,7 @@ static const double MOST_REACH = 0.9;
 
 // Patches are quicker in plain scenes only: room, room-area, closed-room, cornell-area and cornell-spot. With more triangles (loft)
 // or with textures 2 % of error takes 1.3 and 10 times the time of virtual lights. Where direct light takes most of the time, scenes of some
-// hundred triangles are plain, too: 2 % takes 12 and 36 s with 1,000 lamps by virtual lights, 6 to 12 by
-// patches, and 5 % 4.4 to 4.8 and 4.6, of which 2 % are left.
+// hundred triangles are plain, too: with 1,000 lamps 2 % takes 12 and 36 s by virtual lights and 6 to 12 by patches; 5 % takes 4.6 s by both.
 static bool isPlain(const vplRunner* r, const vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
