@@ -282,6 +282,26 @@ static void laterFrame(vplRenderOptions* o)
     o->sequence.frame = 45;
 }
 
+// 72 lamps, which all light each pixel; four samples of eight at rims of shadows, and four lamps at hits of short rays.
+static void manyLamps(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_KELLER;
+    o->particles.count = 250;
+    o->lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    o->lights.compensation = VPL_COMPENSATION_RAYS;
+    o->lights.minDistance = 1;
+    o->pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
+    o->pipeline.interleave = 4;
+    o->output.antialias = 8;
+}
+
+static void chosenLamps(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_DIRECT;
+    o->lights.emitterSamples = 8;
+    o->output.antialias = 4;
+}
+
 static const Case CASES[] = {
     {"room-physical", "room", 1, defaults},
     {"room-documented", "closed-room", 0, documented},
@@ -322,6 +342,8 @@ static const Case CASES[] = {
     {"radiosity-adaptive", "room-area", 1, radiosityAdaptive},
     {"adaptive-patches", "room-area", 0, adaptivePatches},
     {"frame-45", "room-path", 2.5f, laterFrame},
+    {"many-lamps", "../../tests/data/lamps", 1, manyLamps},
+    {"chosen-lamps", "../../tests/data/lamps", 1, chosenLamps},
 };
 
 enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
