@@ -430,6 +430,24 @@ TEST(ASampleOfEmittersForMapsKeepsTheirSum, 1)
     vplScene_Destroy(scene);
 }
 
+// A tree holds no directional lights: all of them light every point.
+TEST(DirectionalLightsAreNotChosenFrom, 1)
+{
+    vplScene* scene = lampScene(context, 6);
+    for (int i = 0; i < 8; i++) {
+        addEmitter(scene, VPL_EMITTER_DIRECTIONAL, vplVec(0, 3, 0), vplVec(0, -1, 0.1f * (float)i), 0.1f);
+    }
+    for (int wanted = 5; wanted <= 6; wanted++) {
+        vplRenderOptions o = plainOptions();
+        vplPlan* plan;
+        o.lights.emitterSamples = wanted;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->emittersPerPoint, wanted < 6 ? wanted : 0);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
+
 // The noise depends on the position of a point, so the mean is that of many pixels.
 TEST(EmitterSamplesHaveTheMeanOfAll, 1)
 {

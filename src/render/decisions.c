@@ -203,6 +203,16 @@ static void chooseParticles(vplPlan* p)
     }
 }
 
+// Points and spots. Trees hold no directional lights, which light every point.
+static int countPlacedEmitters(const vplPlan* p)
+{
+    int count = 0;
+    for (int i = 0; i < p->emitterCount; i++) {
+        count += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL;
+    }
+    return count;
+}
+
 static void chooseShadows(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
@@ -215,11 +225,12 @@ static void chooseShadows(vplPlan* p)
         o->lights.shadows == VPL_LIGHT_SHADOWS_RAY || (!documented && maps > VPL_MAX_EMITTER_MAP_BYTES);
     p->emitterRays = p->emitterRays || p->mapEmitters != p->emitters; // not each has a map
     const int asked = o->lights.emitterSamples, most = asked > 0 ? asked : VPL_MOST_EMITTERS;
-    if (p->emitterCount > most && !documented && o->method != VPL_METHOD_PATH) {
+    const int placed = countPlacedEmitters(p);
+    if (placed > most && !documented && o->method != VPL_METHOD_PATH) {
         p->emitterRays = true;
         p->emittersPerPoint = asked > 0 ? asked : VPL_EMITTERS_PER_POINT;
         vplDecide(p, "emitter-samples", "for each point a tree chooses %d of the %d lights",
-                  p->emittersPerPoint, p->emitterCount);
+                  p->emittersPerPoint, placed);
     }
     p->biasRule = pair || (documented && !exact) ? VPL_BIAS_PAIR : VPL_BIAS_EXACT;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
