@@ -8,6 +8,7 @@
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 #include "render/stages/results.h"
+#include "shading/shading.h"
 #include "visibility/hemi_map.h"
 
 #include <math.h>
@@ -111,10 +112,10 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
     }
 }
 
-// Shadow rays to emitters where a short ray hits a surface. A tree chooses four of many.
+// The cost of the emitters' light where a short ray hits a surface, in shadow rays.
 static double hitEmitters(const vplPlan* p)
 {
-    return vplTreesOf(p).emitters <= p->emitterCount ? 4 * VPL_CHOICE_WORK : p->emitterCount;
+    return vplTreesOf(p).emitters <= p->emitterCount ? VPL_CHOSEN_AT_HIT * VPL_CHOICE_WORK : p->emitterCount;
 }
 
 // Short rays, a fifth or so of which hit something near.

@@ -21,9 +21,6 @@
 // Emitters that light a pixel, for each that lights a hit, of which a pixel has many.
 enum { PER_HIT = 16 };
 
-// Emitters that a tree chooses for each hit, where all of more than VPL_EMITTERS_OF_HIT would cast shadow rays.
-enum { CHOSEN_AT_HIT = 4 };
-
 // Only a D far larger than a scene of white walls, where roulette ends no walk, comes near this.
 enum { MAX_BOUNCES = 1024 };
 
@@ -242,7 +239,7 @@ static int emittersOfHit(const vplShadeDef* shade, const vplCompensationDef* def
 {
     const bool many = def->shadows == NULL && def->emitterCount > VPL_EMITTERS_OF_HIT;
     return shade->emittersPerPoint > 0 ? (shade->emittersPerPoint + PER_HIT - 1) / PER_HIT
-           : many                      ? CHOSEN_AT_HIT
+           : many                      ? VPL_CHOSEN_AT_HIT
                                        : 0;
 }
 

@@ -3,7 +3,7 @@
 // the centre of each is replaced by the mean over the samples of the pixel. The search starts at such
 // neighbours, and at some corners of pixels whose light differs from that in the centre, which finds shadows
 // thinner than a pixel. It spreads to the neighbours of every pixel whose samples differ. Where many emitters cast shadow
-// rays, four samples stand for all: a rim is that of one emitter, which is a small part of the light.
+// rays, only four samples of a pixel are lit: a rim belongs to one emitter, which is a small part of the light.
 #include "shading/edges.h"
 
 // Light differs if the smaller is less than this share of the larger.
@@ -21,16 +21,17 @@ typedef enum PointKind {
     SAMPLE  // a sample of a pixel
 } PointKind;
 
-// Where more emitters than this cast shadow rays, few samples stand for all.
+// If more than FEW_EMITTERS emitters cast shadow rays, only four samples of a pixel are lit.
 enum { FEW_EMITTERS = 64 };
 
-// Four of 8 or 16 samples. Of all sets of four, these and the centre find best what edges in random directions cover.
+// The four of 8 or 16 samples that are lit, as bits. Of all sets of four samples, these, together with the pixel's centre, give the
+// least error of the area that an edge in a random direction covers.
 enum { FOUR_OF_8 = 1 << 0 | 1 << 2 | 1 << 5 | 1 << 7, FOUR_OF_16 = 1 << 1 | 1 << 3 | 1 << 12 | 1 << 14 };
 
 typedef struct Rims {
     const vplShading* shading;
     const vplTile* tile;
-    uint16_t few;           // samples that stand for all; all bits are set where all samples are lit
+    uint16_t lit;           // bits of the samples that are lit
     const uint16_t* own;    // samples of each element that show the surface in its centre
     float light[RIM_CELLS]; // from emitters in centres of pixels; NAN where nothing is seen
     uint8_t listed[RIM_CELLS];
@@ -38,7 +39,8 @@ typedef struct Rims {
     int listCount;
     PointKind kind; // of the points in the queue
     vplEdgeQueue queue;
-    int cells[VPL_LANES]; // of the points in the queue
+    int cells[VPL_LANES];    // of the points in the queue
+    float shares[VPL_LANES]; // of its pixel's light that each sample in the queue stands for
 } Rims;
 
 // False for NAN.
@@ -105,20 +107,6 @@ static void list(Rims* r, int cell)
 
 // ---- light at points
 
-// The samples of a pixel that are lit: those that show the surface in its centre, or a few of them.
-static uint32_t litSamples(const Rims* r, int cell)
-{
-    const uint32_t own = r->own[vplElementOf(xOf(cell), yOf(cell))], few = own & r->few;
-    return __builtin_popcount(few) > 1 ? few : own;
-}
-
-// The number of a pixel's samples that each lit one stands for. The centre is one more on both sides.
-static float weightOf(const Rims* r, int cell)
-{
-    const uint32_t own = r->own[vplElementOf(xOf(cell), yOf(cell))];
-    return (float)(__builtin_popcount(own) + 1) / (float)(__builtin_popcount(litSamples(r, cell)) + 1);
-}
-
 // Lists the neighbours of a pixel whose samples differ.
 static void spread(Rims* r, int cell)
 {
@@ -150,7 +138,7 @@ static void flush(Rims* r)
             list(r, cell);
         } else if (r->kind == SAMPLE) {
             const vplReflector* to = &vplFacetCache_Get(s, q->block.points.triangle[l], q->cache)->reflector;
-            const float share = weightOf(r, cell) / (float)(r->tile->sampleCount + 1);
+            const float share = r->shares[l];
             double factor[3];
             vplFactorAtPoint(s, to, q->block.points.triangle[l], vplSurface_At(&q->block.surface, l), factor);
             for (int c = 0; c < 3; c++) {
@@ -268,8 +256,12 @@ static void smoothPixel(Rims* r, int cell)
     const vplTileSums* sums = tile->scratch;
     const int at[2] = {xOf(cell), yOf(cell)}, element = vplElementOf(at[0], at[1]);
     const vplReflector* to = &vplFacetCache_Get(s, triangleOf(r, cell), r->queue.cache)->reflector;
-    const uint32_t lit = litSamples(r, cell);
-    const float share = (float)__builtin_popcount(lit) * weightOf(r, cell) / (float)(tile->sampleCount + 1);
+    const uint32_t own = r->own[element], few = own & r->lit;
+    const uint32_t lit = __builtin_popcount(few) > 1 ? few : own;
+    const int count = __builtin_popcount(lit);
+    // Each lit sample, and the centre, stands for so many of the samples that show this surface.
+    const float weight = (float)(__builtin_popcount(own) + 1) / (float)(count + 1);
+    const float all = (float)(tile->sampleCount + 1), share = (float)count * weight / all;
     float* pixel = vplPixelOf(s, tile->x + at[0], tile->y + at[1]);
     double factor[3];
     vplFactorInPixel(s, to, triangleOf(r, cell), tile->x + at[0], tile->y + at[1], factor);
@@ -279,12 +271,13 @@ static void smoothPixel(Rims* r, int cell)
     }
     for (uint32_t left = lit; left != 0; left &= left - 1) {
         const int i = __builtin_ctz(left);
+        r->shares[r->queue.count] = weight / all;
         push(r, cell, tile->samples[i][element], at, vplSubPixel_OfSample(i, tile->sampleCount));
     }
 }
 
-// The samples that stand for all of a pixel.
-static uint16_t fewSamples(const vplDirectLight* direct, int samples)
+// The samples that are lit, as bits.
+static uint16_t samplesToLight(const vplDirectLight* direct, int samples)
 {
     bool many = direct->emitterCount > FEW_EMITTERS && direct->shadows == NULL && direct->maps == NULL;
     for (int i = 0; many && i < direct->emitterCount; i++) {
@@ -303,7 +296,7 @@ void vplSmoothRims(const vplShading* s, const vplTile* tile, vplFacetCache* cach
     Rims r;
     r.shading = s;
     r.tile = tile;
-    r.few = fewSamples(&s->direct, tile->sampleCount);
+    r.lit = samplesToLight(&s->direct, tile->sampleCount);
     r.own = own;
     r.listCount = 0;
     r.queue = (vplEdgeQueue){.shading = s, .cache = cache, .rays = &sums->shadowRays};

@@ -9,8 +9,9 @@
 
 // ---- light
 
-// At most so many emitters light a hit of a short ray; a tree chooses a few of more, unless these have shadow maps.
-enum { VPL_EMITTERS_OF_HIT = 64 };
+// A hit of a short ray is lit by all emitters, or, if more than VPL_EMITTERS_OF_HIT would cast shadow rays, by VPL_CHOSEN_AT_HIT that a
+// tree chooses.
+enum { VPL_EMITTERS_OF_HIT = 64, VPL_CHOSEN_AT_HIT = 4 };
 
 // An emitter as its kernel reads it.
 typedef struct vplEmitterRay {
