@@ -113,8 +113,8 @@ vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vp
 vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut);
 
 // Hash of all that a picture depends on: cameras and emitters with their paths, textures, materials, meshes and objects where
-// they stand now, in their order, without names, and the environment. The same in every process and on every machine; it takes a pass over the
-// scene's data.
+// they stand now, in their order, without names, and the environment. The same in every process and on every machine; it takes
+// a pass over the scene's data.
 uint64_t vplScene_GetHash(const vplScene* scene);
 
 VPL_HEADER_END

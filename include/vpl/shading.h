@@ -150,9 +150,9 @@ typedef struct vplShadeDef {
     const vplReflectiveMap* const* emitterMaps;
     int emitterCount; // 0 (default): no direct light
     // Points and spots that light a point, with shadow rays, chosen from a tree by how much light they may send there; 0
-    // (default), or not fewer than there are: all do. Physical only. The noise depends on a point's position alone. A
-    // sixteenth of them, rounded up, lights a hit of a short ray; if all light a point, all light a hit, too, but of more than
-    // 64 without shadow maps a tree chooses four there, and four samples of 8 or 16 stand for all at rims of shadows.
+    // (default), or not fewer than there are: all do. Physical only. The noise depends on a point's position alone.
+    // Hits of short rays are lit by a sixteenth of this number, rounded up. If it is 0 and more than 64 emitters have no shadow
+    // maps, a tree chooses four of them for each hit, and only four samples of 8 or 16 are lit at rims of shadows.
     int emittersPerPoint;
     // Triangles that emit, and light a point by a point on each, likewise; 0 (default): `areaLights` stand for them.
     int trianglesPerPoint;

@@ -37,9 +37,11 @@ double vplAskedEmitters(const vplPlan* p)
     double sum = 0;
     for (int i = 0; i < p->emitterCount; i++) {
         const vplEmitterDef* e = &p->emitters[i];
-        double sine, cosine;
-        vplSinCos(e->outerAngle, &sine, &cosine);
-        sum += e->type == VPL_EMITTER_SPOT ? 0.5 - 0.5 * cosine : 1;
+        double sine, cosine = -1; // a point light is a cone of all directions
+        if (e->type == VPL_EMITTER_SPOT) {
+            vplSinCos(e->outerAngle, &sine, &cosine);
+        }
+        sum += 0.5 - 0.5 * cosine;
     }
     return sum;
 }

@@ -49,7 +49,8 @@ static inline double vplPlan_PointSets(const vplPlan* plan)
 // 1,000 takes five times as long as that, and the choices have a relmse of 0.011.
 enum { VPL_MOST_EMITTERS = 1024, VPL_EMITTERS_PER_POINT = 64 };
 
-// To choose an emitter from the tree and to cast a shadow ray to it takes as long as so many rays to emitters that neighbours ask, too: 7 to 18.
+// A tree's choice of an emitter, with its shadow ray, takes as long as so many shadow rays to emitters that light all pixels (measured: 7 to
+// 18), because the rays of neighbouring pixels to one emitter are coherent.
 enum { VPL_CHOICE_WORK = 10 };
 
 // Where there are more emitters, so many of them, chosen by strength, have reflective maps and stand for all: the texels of
@@ -84,7 +85,8 @@ vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 // The least numbers of emitters and of triangles that emit from which points choose by a tree.
 vplTreesWanted vplTreesOf(const vplPlan* plan);
 
-// The mean number of emitters that a point asks by shadow rays, if all light it: a spot lights what is inside of its cone.
+// The number of emitters to which a point casts shadow rays on average, if no tree chooses among them. A spot counts as the share of all
+// directions that lie in its cone.
 double vplAskedEmitters(const vplPlan* plan);
 
 // Decides whether emitting triangles light pixels by samples on them or by a tree.

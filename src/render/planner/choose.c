@@ -46,7 +46,7 @@ static void chooseShadows(vplPlan* p)
 
 // Where so many emitters light each sample of a pixel, smooth edges take most of the time (1,000 lamps at 10 %: 4.3 s with eight
 // samples, 3.3 with two, 2.3 with one, whose edges are jagged). For a large error a tree chooses some emitters for each point: 20 %
-// take 0.9 s with 32, which leave 8 % of error in direct light, and 3.3 with all.
+// take 0.9 s with 32, which leave 16 % of error in direct light, and 3.3 with all.
 enum { MANY_EMITTERS = 256, EMITTERS_OF_LARGE_ERROR = 32, MANY_PIXELS = 300000 };
 
 // Each pass draws every triangle of the scene. Above this number of triangles per pixel, a pass of 4,000 particles takes only 1.1 to 2
@@ -104,7 +104,6 @@ static void chooseLights(const vplRunner* r, vplPlan* p, double error)
     vplRenderOptions* o = &p->options;
     const bool large = (double)o->output.width * o->output.height >= MANY_PIXELS;
     const bool goes = o->stop.budgetMs > 0 || o->stop.maxError > 0;
-    const double emitters = vplAskedEmitters(p);
     if (o->particles.count < 0 && goes) {
         chooseParticles(r, p);
     }
@@ -112,11 +111,10 @@ static void chooseLights(const vplRunner* r, vplPlan* p, double error)
         o->pipeline.interleave = 4;
         vplDecide(p, "interleave", "so small an error allows little blur");
     }
-    if (o->lights.emitterSamples == 0 && o->stop.maxError >= LARGE_ERROR && emitters >= MANY_EMITTERS) {
+    const bool many = o->lights.emitterSamples == 0 && vplAskedEmitters(p) >= MANY_EMITTERS;
+    if (many && o->stop.maxError >= LARGE_ERROR) {
         o->lights.emitterSamples = EMITTERS_OF_LARGE_ERROR;
-    }
-    if (o->output.antialias == 8 && o->stop.maxError > 0 && error >= 0.1 && emitters >= MANY_EMITTERS &&
-        o->lights.emitterSamples == 0) {
+    } else if (many && o->output.antialias == 8 && o->stop.maxError > 0 && error >= 0.1) {
         o->output.antialias = 2;
         vplDecide(p, "antialias", "many lights have many rims of shadows, where paths smooth what errs most");
     }

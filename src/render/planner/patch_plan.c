@@ -31,14 +31,20 @@ double vplMostPatches(const vplContext* context)
     return sqrt((limit > 0 && limit < most ? limit : most) / (3 * sizeof(float)));
 }
 
-// Rays of form factors over the square of the number of patches (flat, loft, room: 0.9 to 1.2).
+// Form factors of n patches take PAIR_RAYS n^2 rays (flat, loft, room: 0.9 to 1.2).
 static const double PAIR_RAYS = 1.2;
 
-// A triangle is cut or grouped in the time of so many rays (furnished).
+// To cut a triangle, or to put it into a group, takes as long as so many rays (furnished).
 enum { TRIANGLE_RAYS = 60 };
 
-// Patches hardly count if they take this share of the time that each pixel's shadow rays to emitters take. For larger errors than
-// SMALL_ERROR direct light takes less time: edges have fewer samples, or each pixel asks some emitters only.
+// The time that `count` patches and their form factors take, in rays.
+static double raysOfPatches(const vplGeometry* g, double count)
+{
+    return PAIR_RAYS * count * count + (double)TRIANGLE_RAYS * g->triangleCount;
+}
+
+// Patches are a small part of the time if they take at most SMALL_SHARE of the time of the shadow rays from pixels to emitters. This holds
+// for errors below SMALL_ERROR only: for larger ones edges have fewer samples, or each pixel is lit by a few of the emitters.
 static const double SMALL_SHARE = 0.1, SMALL_ERROR = 0.08;
 
 static bool areSmallPart(const vplRunner* r, const vplPlan* p)
@@ -47,10 +53,9 @@ static bool areSmallPart(const vplRunner* r, const vplPlan* p)
     const vplRenderOptions* o = &p->options;
     const double pixels = (double)o->output.width * o->output.height;
     const double emitters = vplAskedEmitters(p);
-    const double rays =
-        PAIR_RAYS * VPL_FIRST_PATCHES * VPL_FIRST_PATCHES + (double)TRIANGLE_RAYS * g->triangleCount;
     return o->stop.maxError > 0 && o->stop.maxError < SMALL_ERROR && emitters >= MANY_EMITTERS &&
-           g->triangleCount <= VPL_FIRST_PATCHES && rays <= SMALL_SHARE * pixels * emitters;
+           g->triangleCount <= VPL_FIRST_PATCHES &&
+           raysOfPatches(g, VPL_FIRST_PATCHES) <= SMALL_SHARE * pixels * emitters;
 }
 
 // True if light comes from emitters that are small and few, or whose direct light takes most of the time.
@@ -67,8 +72,9 @@ static bool suitEmitters(const vplRunner* r, const vplPlan* p)
 static const double MOST_REACH = 0.9;
 
 // Patches are quicker in plain scenes only: room, room-area, closed-room, cornell-area and cornell-spot. With more triangles (loft)
-// or with textures 2 % of error takes 1.3 and 10 times the time of virtual lights. Where direct light takes most of the time, scenes of some
-// hundred triangles are plain, too: with 1,000 lamps 2 % takes 12 and 36 s by virtual lights and 6 to 12 by patches; 5 % takes 4.6 s by both.
+// or with textures 2 % of error takes 1.3 and 10 times the time of virtual lights. Scenes of up to
+// VPL_FIRST_PATCHES triangles are plain, too, if patches are a small part of the time: with 1,000 lamps 2 % of error takes 12 and 36 s by
+// virtual lights and 6 to 12 s by patches; 5 % takes 4.6 s by either.
 static bool isPlain(const vplRunner* r, const vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
@@ -99,8 +105,8 @@ static bool fitInto(const vplRunner* r, const vplPlan* p, const vplRenderOptions
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const double pixels = (double)o->output.width * o->output.height;
-    const double needs = PAIR_RAYS * count * count + (double)TRIANGLE_RAYS * g->triangleCount +
-                         PIXEL_RAYS * pixels * p->emitterCount + VPL_PATH_RAY * pixels * gather;
+    const double needs =
+        raysOfPatches(g, count) + PIXEL_RAYS * pixels * p->emitterCount + VPL_PATH_RAY * pixels * gather;
     return needs <= rays && count <= vplMostPatches(r->run.context);
 }
 

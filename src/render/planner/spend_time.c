@@ -33,10 +33,10 @@ static double timeOfPath(const vplRenderer* r)
     return ms / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
 }
 
-// Path tracing must promise this share of the squared error that virtual lights leave, by the rays and by the time of the truth's paths: rays
-// of many pixels to one lamp are far quicker than those of paths, few paths of the truth tell too little of the variance, and at the end of
-// the time paths at edges halve the error of virtual lights. In 5 s path tracing left 8.6 % of error in conference-spot, 7.9 in sponza-sun,
-// 5.5 with 1,000 lamps and 5.2 in textured-room; virtual lights leave 4.6, 3.8, 3.8 and 1.0.
+// Path tracing follows only if its squared error is foreseen to be this share of that of virtual lights, both by the rays and by the time of
+// the truth's paths. Rays alone promise too much where many pixels cast coherent rays to one lamp; the truth has too few paths to show all
+// of the variance; and virtual lights still gain from paths at edges when the time ends. In 5 s path tracing left 8.6 % of error in
+// conference-spot, 7.9 in sponza-sun, 5.5 with 1,000 lamps and 5.2 in textured-room; virtual lights leave 4.6, 3.8, 3.8 and 1.0.
 static const double SHARE_FOR_PATHS = 0.5;
 
 // The least squared error for the time that is left.

@@ -95,7 +95,7 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->radiosity.gather = 0;
 }
 
-// True if the planner may light the picture by patches that cost at most so many rays.
+// True if the planner may light the picture by patches, and the first of them cost at most `rays` rays.
 static bool suitsPatches(const vplRenderer* r, double rays, int* gatherOut)
 {
     return vplHasTimeAlone(r) && vplPatchesSuitTime(&r->runner, r->plan, &r->asked, rays, gatherOut);
@@ -131,12 +131,12 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
 
 // ---- after a coarse picture
 
-// Many emitters have so many rims of shadows that smooth edges take twice as long, where all 1,000 lamps light a picture: 3.4 s of a
-// processor instead of 1.7. Times that are foreseen are wrong by some tenths.
+// Direct light with smooth edges takes about this many times as long as without, because many emitters have many rims of shadows: with 1,000
+// lamps 3.4 s of a processor instead of 1.7. The factor is larger than 2 because foreseen times are wrong by some tenths.
 static const double TIMES_OF_EDGES = 2.5;
 
-// After a coarse picture for which few emitters were chosen the next has as many as 0.7 of the time is enough for: those that were
-// asked for, or all without smooth edges, or as many choices as fit.
+// Sets the emitters of the picture that follows a coarse one, for which a tree chose COARSE_CHOICES at each point. It has what was asked for if
+// that fits into 0.7 of the time; else all emitters without smooth edges; else as many choices as fit.
 static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
 {
     const int count = r->plan->emitterCount, before = r->plan->emittersPerPoint;
