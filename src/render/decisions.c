@@ -203,16 +203,6 @@ static void chooseParticles(vplPlan* p)
     }
 }
 
-// Points and spots. Trees hold no directional lights, which light every point.
-static int countPlacedEmitters(const vplPlan* p)
-{
-    int count = 0;
-    for (int i = 0; i < p->emitterCount; i++) {
-        count += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL;
-    }
-    return count;
-}
-
 static void chooseShadows(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
@@ -224,11 +214,11 @@ static void chooseShadows(vplPlan* p)
     p->emitterRays =
         o->lights.shadows == VPL_LIGHT_SHADOWS_RAY || (!documented && maps > VPL_MAX_EMITTER_MAP_BYTES);
     p->emitterRays = p->emitterRays || p->mapEmitters != p->emitters; // not each has a map
-    const int asked = o->lights.emitterSamples, most = asked > 0 ? asked : VPL_MOST_EMITTERS;
-    const int placed = countPlacedEmitters(p);
-    if (placed > most && !documented && o->method != VPL_METHOD_PATH) {
+    int placed;
+    const int chosen = vplChosenEmitters(p, o->lights.emitterSamples, &placed);
+    if (chosen > 0 && !documented && o->method != VPL_METHOD_PATH) {
         p->emitterRays = true;
-        p->emittersPerPoint = asked > 0 ? asked : VPL_EMITTERS_PER_POINT;
+        p->emittersPerPoint = chosen;
         vplDecide(p, "emitter-samples", "for each point a tree chooses %d of the %d lights",
                   p->emittersPerPoint, placed);
     }

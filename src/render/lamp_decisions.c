@@ -32,6 +32,18 @@ vplTreesWanted vplTreesOf(const vplPlan* p)
                : (vplTreesWanted){emitters, hits || vplPixelsChooseTriangles(p) ? 1 : INT32_MAX};
 }
 
+int vplChosenEmitters(const vplPlan* p, int asked, int* placedOut)
+{
+    *placedOut = 0;
+    for (int i = 0; i < p->emitterCount; i++) {
+        *placedOut += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL;
+    }
+    if (asked > 0) {
+        return asked < *placedOut ? asked : 0;
+    }
+    return *placedOut > VPL_MOST_EMITTERS ? VPL_EMITTERS_PER_POINT : 0;
+}
+
 double vplAskedEmitters(const vplPlan* p)
 {
     double sum = 0;

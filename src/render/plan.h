@@ -85,6 +85,10 @@ vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 // The least numbers of emitters and of triangles that emit from which points choose by a tree.
 vplTreesWanted vplTreesOf(const vplPlan* plan);
 
+// The number of emitters that a tree chooses for each point if --emitter-samples is `asked`; 0: all of them light it. *placedOut: points and
+// spots, among which the tree chooses. Directional lights always light every point.
+int vplChosenEmitters(const vplPlan* plan, int asked, int* placedOut);
+
 // The number of emitters to which a point casts shadow rays on average, if no tree chooses among them. A spot counts as the share of all
 // directions that lie in its cone.
 double vplAskedEmitters(const vplPlan* plan);

@@ -139,10 +139,9 @@ static const double TIMES_OF_EDGES = 2.5;
 // that fits into 0.7 of the time; else all emitters without smooth edges; else as many choices as fit.
 static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
 {
-    const int count = r->plan->emitterCount, before = r->plan->emittersPerPoint;
-    const int asked = o->lights.emitterSamples > 0 ? o->lights.emitterSamples
-                      : count > VPL_MOST_EMITTERS  ? VPL_EMITTERS_PER_POINT
-                                                   : 0;
+    int placed;
+    const int asked = vplChosenEmitters(r->plan, o->lights.emitterSamples, &placed);
+    const int before = r->plan->emittersPerPoint;
     const double all = vplAskedEmitters(r->plan);
     const double spent = vplClockMs() - r->planStart;
     const double fits = before * fmax(1, 0.7 * vplTimeLeft(r) / fmax(spent, 1)),
@@ -157,7 +156,7 @@ static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
     o->lights.emitterSamples = (int)fits;
     vplLog(r->runner.run.context, VPL_LOG_INFO,
            "%d of the scene's %d lights are chosen for each point in this time", o->lights.emitterSamples,
-           count);
+           placed);
 }
 
 // After a coarse picture of radiosity the next has as many patches as half of the time is enough for, where the time
