@@ -71,7 +71,12 @@ typedef enum vplAov {
 #define VPL_NO_DEPTH 1e10f
 
 // Upper limits of paths per pixel and of bounces per path.
-enum { VPL_MAX_SAMPLES = 1 << 24, VPL_MAX_BOUNCES = 1 << 16, VPL_MAX_EDGE_PIXELS = 1 << 28 };
+enum {
+    VPL_MAX_SAMPLES = 1 << 24,
+    VPL_MAX_LANDINGS = 16,
+    VPL_MAX_BOUNCES = 1 << 16,
+    VPL_MAX_EDGE_PIXELS = 1 << 28
+};
 
 // Shadows of virtual lights.
 typedef enum vplLightShadows {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Based on: Eric Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, chapter 9 (multiple
-// importance sampling, power heuristic); Eric P. Lafortune and Yves D. Willems, Bi-directional Path Tracing,
-// Compugraphics 1993, with light paths of one step: they find bright places that paths from the camera hardly
-// find, such as the ceiling above a point light. For diffuse surfaces the weights depend on ratios of
-// densities alone, and no weighted term exceeds the radiance reflected from its light, so nothing overflows
-// where a surface touches an area light.
+// importance sampling, power heuristic). For diffuse surfaces the weights depend on ratios of densities
+// alone, and no weighted term exceeds the radiance reflected from its light, so nothing overflows where a
+// surface touches an area light.
 #include "reference/direct_light.h"
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
@@ -18,49 +16,34 @@ enum { TREE_OFFERS = 4 };
 
 // ---- weights
 
-// The unobstructed connection of a vertex with a point on a light.
-typedef struct Connection {
-    vplRadiance value; // that the vertex reflects, over the density of choosing the point
-    // Densities with which BSDF sampling and particles find the same path, over that of choosing the point.
-    double bsdfRatio, particleRatio;
-    double distance, cosineAtLight; // distance 0: they cannot see each other
-} Connection;
-
-static double heuristic(const vplPathScene* s, double ratio)
-{
-    return s->def.balanceHeuristic ? ratio : ratio * ratio;
-}
-
-static bool samplesLight(const vplPathScene* s, const Connection* c)
+static bool samplesLight(const vplPathScene* s, const vplConnection* c)
 {
     return c->bsdfRatio == 0 || s->def.techniques & VPL_PATH_LIGHT_SAMPLING;
 }
 
-static double sumOfTechniques(const vplPathScene* s, const Connection* c)
+double vplConnection_Weights(const vplPathScene* s, const vplConnection* c)
 {
     return (samplesLight(s, c) ? 1 : 0) +
-           (s->def.techniques & VPL_PATH_BSDF_SAMPLING ? heuristic(s, c->bsdfRatio) : 0) +
-           (s->def.techniques & VPL_PATH_PARTICLES ? heuristic(s, c->particleRatio) : 0);
+           (s->def.techniques & VPL_PATH_BSDF_SAMPLING ? vplHeuristic(s, c->bsdfRatio) : 0);
 }
 
-static double lightSamplingWeight(const vplPathScene* s, const Connection* c)
+static double sumOfTechniques(const vplPathScene* s, const vplConnection* c)
+{
+    return vplConnection_Weights(s, c) + vplHeuristic(s, c->particleRatio) * c->edges;
+}
+
+static double lightSamplingWeight(const vplPathScene* s, const vplConnection* c)
 {
     return c->distance > 0 && samplesLight(s, c) ? 1 / sumOfTechniques(s, c) : 0;
 }
 
-static double bsdfSamplingWeight(const vplPathScene* s, const Connection* c)
+static double bsdfSamplingWeight(const vplPathScene* s, const vplConnection* c)
 {
     if (c->distance == 0) {
         return 1; // the surface touches the light: no other technique finds the path
     }
-    return s->def.techniques & VPL_PATH_BSDF_SAMPLING ? heuristic(s, c->bsdfRatio) / sumOfTechniques(s, c)
+    return s->def.techniques & VPL_PATH_BSDF_SAMPLING ? vplHeuristic(s, c->bsdfRatio) / sumOfTechniques(s, c)
                                                       : 0;
-}
-
-// The weight over particleRatio.
-static double particleWeight(const vplPathScene* s, const Connection* c)
-{
-    return (s->def.balanceHeuristic ? 1 : c->particleRatio) / sumOfTechniques(s, c);
 }
 
 // ---- connections
@@ -83,19 +66,19 @@ static double along(vplVec3 n, const double direction[3])
 
 // The environment in one direction. A particle's start has the density of the direction, times the environment's share of
 // all power over the area of the disc that particles cover; that share remains of the ratio.
-static Connection connectToSky(const vplPathScene* s, const vplPathVertex* vertex, vplVec3 towards)
+static vplConnection connectToSky(const vplPathScene* s, const vplPathVertex* vertex, vplVec3 towards)
 {
     const double to[3] = {towards.x, towards.y, towards.z};
     const double flat = along(vertex->normal, to), cosine = along(vertex->shading, to);
     double density;
     const vplRgb light = vplEnvironment_Light(s->geometry->environment, towards, &density);
-    Connection found = {.distance = FLT_MAX, .cosineAtLight = 1};
+    vplConnection found = {.distance = FLT_MAX, .cosineAtLight = 1, .edges = vertex->edges};
     if (!(density > 0 && flat > 0 && cosine > 0)) {
-        return (Connection){.distance = 0};
+        return (vplConnection){.distance = 0};
     }
     found.bsdfRatio = cosine / VPL_PI / density;
     found.value = vplRadiance_Reflect(found.bsdfRatio, vertex->rho, vplRadiance_Of(light));
-    found.particleRatio = s->skyShare * flat / vertex->density;
+    found.particleRatio = s->skyShare * flat;
     return found;
 }
 
@@ -139,7 +122,7 @@ static double probabilityOf(const vplPathScene* s, const vplPathVertex* vertex, 
 // a chosen point, times the triangles' share of all power; that share and the lobe of the cosine remain of
 // the ratio. Trees choose an emitter or a triangle with this probability, which is 1 without them: then all
 // emitters are asked, and triangles are chosen by power.
-static inline __attribute__((always_inline)) Connection
+static inline __attribute__((always_inline)) vplConnection
 connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint* light, double probability)
 {
     if (light->emitter < 0 && light->triangle < 0) {
@@ -147,7 +130,7 @@ connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint*
     }
     const vplEmitterDef* e = light->emitter >= 0 ? &s->emission->emitters[light->emitter] : NULL;
     const bool fromInfinity = e != NULL && e->type == VPL_EMITTER_DIRECTIONAL;
-    Connection none = {.distance = 0}, found = {.cosineAtLight = 1};
+    vplConnection none = {.distance = 0}, found = {.cosineAtLight = 1, .edges = vertex->edges};
     double to[3] = {0, 0, 0}, falloff = 1;
     if (fromInfinity) {
         found.distance = FLT_MAX;
@@ -167,7 +150,7 @@ connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint*
         vplRgb i = vplEmitter_Intensity(e, vplVec((float)-to[0], (float)-to[1], (float)-to[2]));
         found.value =
             vplRadiance_Reflect(cosine * falloff / VPL_PI / probability, vertex->rho, vplRadiance_Of(i));
-        found.particleRatio = vplRgbMean(i) / s->power * flat * falloff / vertex->density / probability;
+        found.particleRatio = vplRgbMean(i) / s->power * flat * falloff / probability;
     } else {
         const vplGeometry* g = s->geometry;
         vplRgb radiance = g->materials[g->triangleMaterials[light->triangle]].emission;
@@ -181,7 +164,7 @@ connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint*
         }
         found.bsdfRatio = cosine / VPL_PI * found.cosineAtLight * falloff / density;
         found.value = vplRadiance_Reflect(found.bsdfRatio, vertex->rho, vplRadiance_Of(radiance));
-        found.particleRatio = share * found.cosineAtLight / VPL_PI * flat * falloff / vertex->density;
+        found.particleRatio = share * found.cosineAtLight / VPL_PI * flat * falloff;
     }
     return found;
 }
@@ -191,11 +174,10 @@ static float largestCoordinate(vplVec3 p)
     return fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
 }
 
-// Tests whether a point on a surface is visible from the vertex; the cosine is at the point. The shadow ray
-// must not hit that surface, which rounding puts before or behind the point: it stops short by the rounding
+// The shadow ray must not hit that surface, which rounding puts before or behind the point: it stops short by the rounding
 // of coordinates, enlarged at grazing angles.
-static bool isVisible(vplPathState* path, const vplPathVertex* v, vplVec3 point, double distance,
-                      double cosine)
+bool vplPathVertex_Sees(vplPathState* path, const vplPathVertex* v, vplVec3 point, double distance,
+                        double cosine)
 {
     const vplGeometry* g = path->scene->geometry;
     double extent = fmaxf(largestCoordinate(point), largestCoordinate(v->hit.position));
@@ -214,10 +196,10 @@ static bool isOpen(vplPathState* path, const vplPathVertex* v, vplVec3 towards)
 }
 
 static bool isEmitterVisible(vplPathState* path, const vplPathVertex* v, const vplEmitterDef* e,
-                             const Connection* c)
+                             const vplConnection* c)
 {
     if (e->type != VPL_EMITTER_DIRECTIONAL) {
-        return isVisible(path, v, e->position, c->distance, 1);
+        return vplPathVertex_Sees(path, v, e->position, c->distance, 1);
     }
     return isOpen(path, v, vplNegate(e->direction));
 }
@@ -247,18 +229,18 @@ static void addTriangle(vplPathState* path, const vplPathVertex* v, double choic
     vplHit point =
         vplGeometry_SampleTriangle(s->geometry, triangle, (float)chosen.rest * 0x1.fffffep-1f, across);
     vplLightPoint light = {-1, triangle, point.position, point.normal};
-    const Connection c = connect(s, v, &light, chosen.probability);
+    const vplConnection c = connect(s, v, &light, chosen.probability);
     const double weight = lightSamplingWeight(s, &c);
-    if (weight > 0 && isVisible(path, v, point.position, c.distance, c.cosineAtLight)) {
+    if (weight > 0 && vplPathVertex_Sees(path, v, point.position, c.distance, c.cosineAtLight)) {
         vplRadiance_Add(sum, vplRadiance_Scale(weight, c.value));
     }
 }
 
-static inline __attribute__((always_inline)) Connection
+static inline __attribute__((always_inline)) vplConnection
 connectToEmitter(const vplPathScene* s, const vplPathVertex* v, int emitter, double probability)
 {
     vplLightPoint light = {emitter, -1, s->emission->emitters[emitter].position, {0, 0, 0}};
-    Connection c = connect(s, v, &light, probability);
+    vplConnection c = connect(s, v, &light, probability);
     c.value = vplRadiance_Scale(lightSamplingWeight(s, &c), c.value);
     return c;
 }
@@ -267,7 +249,7 @@ connectToEmitter(const vplPathScene* s, const vplPathVertex* v, int emitter, dou
 // reservoir sampling by one number that is rescaled at every step.
 typedef struct Reservoir {
     double choice, total, power; // of all, and of the chosen one
-    Connection chosen;
+    vplConnection chosen;
     int emitter;
 } Reservoir;
 
@@ -275,7 +257,7 @@ typedef struct Reservoir {
 static inline __attribute__((always_inline)) void offer(const vplPathScene* s, const vplPathVertex* v,
                                                         int emitter, double probability, Reservoir* r)
 {
-    const Connection c = connectToEmitter(s, v, emitter, probability);
+    const vplConnection c = connectToEmitter(s, v, emitter, probability);
     double power = c.value.r + c.value.g + c.value.b;
     if (power <= 0) {
         return;
@@ -329,7 +311,7 @@ static void addSky(vplPathState* path, const vplPathVertex* v, const float u[2],
 {
     const vplVec3 towards =
         vplEnvironment_Sample(path->scene->geometry->environment, (double)u[0], (double)u[1]).direction;
-    const Connection c = connectToSky(path->scene, v, towards);
+    const vplConnection c = connectToSky(path->scene, v, towards);
     const double weight = lightSamplingWeight(path->scene, &c);
     if (weight > 0 && isOpen(path, v, towards)) {
         vplRadiance_Add(sum, vplRadiance_Scale(weight, c.value));
@@ -368,7 +350,7 @@ vplRadiance vplHitEmission(const vplPathScene* s, const vplPathVertex* vertex, c
         return (vplRadiance){0, 0, 0};
     }
     vplLightPoint light = {-1, hit->triangle, hit->position, hit->normal};
-    const Connection c = connect(s, vertex, &light, probabilityOf(s, vertex, &light));
+    const vplConnection c = connect(s, vertex, &light, probabilityOf(s, vertex, &light));
     return vplRadiance_Scale(bsdfSamplingWeight(s, &c), vplRadiance_Of(emission));
 }
 
@@ -377,52 +359,16 @@ vplRadiance vplMissEmission(const vplPathScene* s, const vplPathVertex* vertex, 
     if (s->geometry->environment == NULL) {
         return (vplRadiance){0, 0, 0};
     }
-    const Connection c = connectToSky(s, vertex, direction);
+    const vplConnection c = connectToSky(s, vertex, direction);
     double density;
     const vplRgb light = vplEnvironment_Light(s->geometry->environment, direction, &density);
     return vplRadiance_Scale(c.distance > 0 ? bsdfSamplingWeight(s, &c) : 0, vplRadiance_Of(light));
 }
 
-// ---- particles
+// ---- light paths
 
-vplLandedParticle vplShootParticle(vplPathState* path, double choice, const float u[4])
+vplConnection vplConnectToLight(const vplPathScene* s, const vplPathVertex* vertex,
+                                const vplLightPoint* light)
 {
-    const vplPathScene* s = path->scene;
-    vplLandedParticle p = {.landed = false};
-    vplParticle start;
-    if (vplEmission_SampleParticle(s->emission, choice, u, &start)) {
-        const vplEmissionSource* source = &s->emission->sources[start.source];
-        p.light = (vplLightPoint){source->emitter, source->triangle, start.position, start.normal};
-        path->rays++;
-        p.landed = vplGeometry_ClosestHit(s->geometry, &start.ray, &p.hit);
-    }
-    return p;
-}
-
-vplRadiance vplConnectToParticle(vplPathState* path, const vplPathVertex* vertex,
-                                 const vplLandedParticle* particle)
-{
-    const vplPathScene* s = path->scene;
-    const vplRadiance none = {0, 0, 0};
-    vplVec3 between = vplSub(particle->hit.position, vertex->hit.position);
-    double distance = (double)vplLength(between);
-    if (!(distance > 0)) {
-        return none;
-    }
-    // The vertex that a path from the camera would have there.
-    vplPathVertex there = vplPathVertex_Make(s, &particle->hit, between, VPL_BOUNCE_SPREAD * (float)distance);
-    double cosine = vplDot(between, vertex->shading) / distance,
-           flat = vplDot(between, vertex->normal) / distance;
-    double cosineThere = -vplDot(between, there.normal) / distance;
-    if (!(cosine > 0 && flat > 0 && cosineThere > 0)) {
-        return none;
-    }
-    there.density = cosine * cosineThere / (VPL_PI * distance * distance);
-    const Connection c = connect(s, &there, &particle->light, probabilityOf(s, &there, &particle->light));
-    if (c.distance == 0) {
-        return none;
-    }
-    vplRadiance value = vplRadiance_Reflect(particleWeight(s, &c), vertex->rho, c.value);
-    bool any = value.r + value.g + value.b > 0;
-    return any && isVisible(path, vertex, particle->hit.position, distance, cosineThere) ? value : none;
+    return connect(s, vertex, light, probabilityOf(s, vertex, light));
 }

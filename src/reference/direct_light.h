@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Direct light at the vertices of a path, by three techniques.
+// Direct light at the vertices of a path, by light sampling and BSDF sampling.
 #ifndef VPL_REFERENCE_DIRECT_LIGHT_H
 #define VPL_REFERENCE_DIRECT_LIGHT_H
 
@@ -24,18 +24,25 @@ typedef struct vplLightPoint {
     vplVec3 position, normal;
 } vplLightPoint;
 
-// A particle from a light, where it has landed.
-typedef struct vplLandedParticle {
-    bool landed;
-    vplLightPoint light;
-    vplHit hit;
-} vplLandedParticle;
+// The unobstructed connection of a vertex with a point on a light.
+typedef struct vplConnection {
+    vplRadiance value; // that the vertex reflects, over the density of choosing the point
+    // Densities with which BSDF sampling finds the point, and with which a light path begins there and lands at the vertex, over
+    // that of choosing the point.
+    double bsdfRatio, particleRatio;
+    double edges;                   // of the vertex, of all techniques
+    double distance, cosineAtLight; // distance 0: they cannot see each other
+} vplConnection;
 
-vplLandedParticle vplShootParticle(vplPathState* path, double choice, const float u[4]);
+// As light sampling chooses the point, if it does.
+vplConnection vplConnectToLight(const vplPathScene* scene, const vplPathVertex* vertex,
+                                const vplLightPoint* light);
 
-// Radiance that is reflected where the particle has landed and again at the vertex, weighted as particle
-// sampling.
-vplRadiance vplConnectToParticle(vplPathState* path, const vplPathVertex* vertex,
-                                 const vplLandedParticle* particle);
+// The sum of the weights of light sampling and BSDF sampling, before they are normalized.
+double vplConnection_Weights(const vplPathScene* scene, const vplConnection* connection);
+
+// Tests whether a point on a surface is visible from the vertex; the cosine is at the point.
+bool vplPathVertex_Sees(vplPathState* path, const vplPathVertex* vertex, vplVec3 point, double distance,
+                        double cosine);
 
 #endif

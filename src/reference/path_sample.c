@@ -7,9 +7,11 @@
 #include "base/context.h"
 #include "math/sampling.h"
 #include "math/vec.h"
-#include "reference/direct_light.h"
+#include "reference/light_path.h"
 
-enum { CAMERA_SET, PARTICLE_SET, FIRST_SET };
+#include <float.h>
+
+enum { CAMERA_SET, LIGHT_PATH_SET, FIRST_SET };
 
 static void add(vplRadiance* sum, vplRgb throughput, vplRadiance light)
 {
@@ -33,13 +35,20 @@ static bool survives(const vplPathState* path, uint32_t set, vplRgb* throughput)
     return true;
 }
 
-// The next vertex, with the density that the reflection had of leading there.
-static vplPathVertex arrive(const vplPathScene* s, const vplPathVertex* from, const vplHit* hit,
+// The next vertex. Going there had a density per square metre, which is the weight of connecting the two instead. A light path that lands at
+// the vertex before leaves it with the cosine of its normal, and not of the shading normal.
+static vplPathVertex arrive(vplPathState* path, const vplPathVertex* from, const vplHit* hit,
                             vplVec3 direction)
 {
+    const vplPathScene* s = path->scene;
     vplPathVertex v = vplPathVertex_Make(s, hit, direction, VPL_BOUNCE_SPREAD * hit->t);
-    double cosines = (double)vplDot(direction, from->shading) * -(double)vplDot(direction, v.normal);
-    v.density = cosines / (VPL_PI * hit->t * hit->t);
+    const double flat = vplDot(direction, from->normal), cosine = vplDot(direction, from->shading);
+    const double density = cosine * -(double)vplDot(direction, v.normal) / (VPL_PI * hit->t * hit->t);
+    const double ratio = cosine > 0 ? vplHeuristic(s, flat / cosine) : 0, edge = vplHeuristic(s, 1 / density);
+    for (int n = s->landings; n > 0; n--) {
+        path->edges[n] = fmin(ratio * path->edges[n - 1] + edge, DBL_MAX);
+    }
+    v.edges = path->edges[s->landings];
     return v;
 }
 
@@ -48,7 +57,7 @@ enum { BOUNCES_PER_QUESTION = 512 };
 
 // Follows the bounces after the camera's first hit. The path is the same for every range of bounces, so that
 // pictures of single bounces add up exactly.
-static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLandedParticle* particle,
+static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLightPath* light,
                           vplRadiance* sum)
 {
     const vplPathScene* s = path->scene;
@@ -65,8 +74,8 @@ static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLan
         if (counts) {
             add(sum, throughput, vplSampleDirect(path, &vertex, u + 2, set + 1));
         }
-        if (particle->landed && !last && bounce + 1 >= s->def.firstBounce) {
-            add(sum, throughput, vplConnectToParticle(path, &vertex, particle));
+        if (light->count > 0 && !last && bounce + light->count >= s->def.firstBounce) {
+            add(sum, throughput, vplConnectToLightPath(path, &vertex, light, bounce, throughput));
         }
         if (last && s->trianglePower <= 0 && s->geometry->environment == NULL) {
             return;
@@ -88,7 +97,7 @@ static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLan
         if (counts) {
             add(sum, throughput, vplHitEmission(s, &vertex, &hit, direction));
         }
-        vertex = arrive(s, &vertex, &hit, direction);
+        vertex = arrive(path, &vertex, &hit, direction);
     }
 }
 
@@ -112,12 +121,13 @@ void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
     if (s->def.emission) {
         vplRadiance_Add(sum, vplRadiance_Of(vplPathScene_EmissionAt(s, &hit, ray.direction)));
     }
-    vplLandedParticle particle = {.landed = false};
-    if (s->def.techniques & VPL_PATH_PARTICLES && s->def.lastBounce > 0) {
-        vplPath_Draw(path, PARTICLE_SET, start);
-        particle = vplShootParticle(path, (double)u[2], start);
+    vplLightPath light;
+    light.count = 0;
+    if (s->landings > 0) {
+        vplPath_Draw(path, LIGHT_PATH_SET, start);
+        vplLightPath_Follow(path, (double)u[2], start, &light);
     }
     // Paths average over the pixel themselves: each looks up half of its width.
     const float width = 0.5f * s->pixelWidth * (hit.t + (float)camera->nearPlane);
-    followBounces(path, vplPathVertex_Make(s, &hit, ray.direction, width), &particle, sum);
+    followBounces(path, vplPathVertex_Make(s, &hit, ray.direction, width), &light, sum);
 }

@@ -8,8 +8,10 @@ vplPathDef vplDefaultPathDef(void)
 {
     // rouletteFrom: least variance for the time in rooms (bench/path).
     return (vplPathDef){.lastBounce = 1 << 16,
+                        .mostBounces = 1 << 16,
                         .emission = true,
                         .techniques = VPL_PATH_ALL,
+                        .landings = 1,
                         .rouletteFrom = 0.25,
                         .emittersOfTree = VPL_PATH_EMITTERS_OF_TREE,
                         .trianglesOfTree = VPL_PATH_TRIANGLES_OF_TREE};
@@ -47,6 +49,8 @@ vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const 
     s->scaleY = sine / cosine;
     s->pixelWidth = (float)(2 * s->scaleY / def->height);
     s->scaleX = s->scaleY * def->width / def->height;
+    const bool lands = def->techniques & VPL_PATH_PARTICLES && def->lastBounce > 0;
+    s->landings = !lands ? 0 : def->landings < def->mostBounces ? def->landings : def->mostBounces;
     TRY(findTrees(s));
     s->def.camera = NULL;
     s->def.emitters = NULL;
@@ -104,10 +108,7 @@ static __attribute__((noinline)) vplRgb paintAt(const vplGeometry* g, const vplH
 vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction, float width)
 {
     const vplGeometry* g = s->geometry;
-    vplPathVertex v = {.hit = *hit,
-                       .normal = hit->normal,
-                       .shading = vplGeometry_ShadingNormal(g, hit),
-                       .density = INFINITY};
+    vplPathVertex v = {.hit = *hit, .normal = hit->normal, .shading = vplGeometry_ShadingNormal(g, hit)};
     v.rho = g->paint == NULL ? g->materials[g->triangleMaterials[hit->triangle]].diffuse
                              : paintAt(g, hit, direction, width);
     if (vplDot(direction, hit->normal) > 0) {

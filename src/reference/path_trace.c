@@ -63,7 +63,8 @@ static void tracePixel(vplPathTracer* t, int x, int y, int64_t* rays)
     }
     for (int i = t->done; i < t->done + t->now; i++) {
         const uint64_t half = i & 1;
-        vplPathState path = {&t->scene, HALVES * (uint64_t)pixel + half, (uint32_t)i / HALVES, 0};
+        vplPathState path = {
+            .scene = &t->scene, .stream = HALVES * (uint64_t)pixel + half, .index = (uint32_t)i / HALVES};
         vplPath_Follow(&path, x, y, &t->sums[pixel][half]);
         *rays += path.rays;
     }

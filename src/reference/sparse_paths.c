@@ -33,7 +33,7 @@ static void tracePixel(const vplSparsePaths* s, vplSparsePixel* p)
     const uint64_t pixel = (uint64_t)p->y * (uint64_t)s->scene.def.width + (uint64_t)p->x;
     for (int i = 2 * s->done; i < 2 * (s->done + s->now); i++) {
         const uint64_t half = i & 1;
-        vplPathState path = {&s->scene, 2 * pixel + half, (uint32_t)i / 2, 0};
+        vplPathState path = {.scene = &s->scene, .stream = 2 * pixel + half, .index = (uint32_t)i / 2};
         vplRadiance light = {0, 0, 0};
         vplPath_Follow(&path, p->x, p->y, &light);
         vplRadiance_Add(&p->sums[half], light);

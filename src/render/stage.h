@@ -34,6 +34,7 @@ typedef enum vplStageId {
     VPL_STAGE_VERTEX_LIGHT,
     VPL_STAGE_GBUFFER,
     VPL_STAGE_PICTURE,
+    VPL_STAGE_LIGHT_PATHS,
     VPL_STAGE_PATHS,
     VPL_STAGE_COUNT
 } vplStageId;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The table of stages, and when a picture needs each.
+#include "reference/light_path.h"
 #include "render/plan.h"
 #include "render/show.h"
 #include "render/stages/make.h"
@@ -13,6 +14,7 @@
 static const char NOT_DIRECT[] = "the picture shows no direct light";
 static const char NOT_VIRTUAL[] = "the picture shows no virtual lights";
 static const char NOT_PATCHES[] = "the picture shows no light of patches";
+static const char NOT_REFLECTED[] = "the picture shows no reflected light";
 static const char NOT_SECOND[] = "there is no second bounce";
 
 __attribute__((format(printf, 3, 4))) static bool because(char* why, bool needed, const char* format, ...)
@@ -253,6 +255,21 @@ static bool needsPicture(const vplPlan* p, char* why)
                    o->supersample > 1 ? "s" : "", rays);
 }
 
+// A picture of few paths takes hardly longer than those that measure.
+enum { WORTH_PILOTS = 64 };
+
+static bool needsLightPaths(const vplPlan* p, char* why)
+{
+    const vplRenderOptions* o = &p->options;
+    const double paths = (double)o->output.width * o->output.height * o->path.samples;
+    const char* problem = o->path.landings >= 0                    ? "--light-landings is given"
+                          : o->maxBounces == 0                     ? NOT_REFLECTED
+                          : o->output.show == VPL_SHOW_DIRECT      ? NOT_REFLECTED
+                          : paths < WORTH_PILOTS * VPL_PILOT_PATHS ? "there are few paths"
+                                                                   : NULL;
+    return choose(why, problem == NULL, "paths tell how often light is reflected before it is seen", problem);
+}
+
 static bool needsPaths(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
@@ -357,6 +374,9 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
             IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(PATCH_LIGHT) | IN(SOLUTION) |
             IN(VERTEX_LIGHT) | IN(GBUFFER), "ALWAYS",
         needsPicture, vplMakePicture, vplDestroyImage, .report = NULL},
+    [VPL_STAGE_LIGHT_PATHS] = {
+        "light paths", 0.15, IN(GEOMETRY), "EMITTERS VIEW size pixel max-bounces",
+        needsLightPaths, vplMakeLightPaths, NULL, .report = NULL},
     [VPL_STAGE_PATHS] = {
         "paths", 1, IN(GEOMETRY) | IN(EMITTER_TREES), "ALWAYS",
         needsPaths, vplMakePaths, vplDestroyPaths, .continues = true, .undoes = true},

@@ -94,9 +94,10 @@ static vplResult openTruth(const vplRun* run, int count, vplTruth* t)
     t->pixels = vplArena_AllocZero(t->arena, (size_t)count, sizeof *t->pixels);
     t->weights = vplArena_AllocZero(t->arena, (size_t)count, sizeof *t->weights);
     TRY(vplArena_Check(t->arena));
-    vplPathDef def = vplDescribePaths(run->plan, run->plan->options.output.show);
+    TRY(vplFindLandings(run));
+    vplPathDef def = vplDescribePaths(run, run->plan->options.output.show);
     def.seed ^= SEED;
-    def.lastBounce = VPL_MAX_BOUNCES;
+    def.lastBounce = def.mostBounces = VPL_MAX_BOUNCES;
     return vplSparsePaths_Init(&t->paths, run->results[VPL_STAGE_GEOMETRY], &def, t->pixels, count);
 }
 

@@ -15,7 +15,7 @@ vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeEmit
     vplMakeSecondBounce, vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeFurtherBounces,
     vplMakeClusteredLights, vplMakeVirtualLights, vplMakePatches, vplMakeSides, vplMakePatchMesh,
     vplMakeFormFactors, vplMakePatchLight, vplMakeSolution, vplMakeVertexLight, vplMakeGbuffer,
-    vplMakePicture, vplMakePaths;
+    vplMakePicture, vplMakeLightPaths, vplMakePaths;
 
 vplDestroyFcn vplDestroyGeometry, vplDestroyEmitterMaps, vplDestroyEmitterTrees, vplDestroyReflectiveMaps,
     vplDestroyLightSet, vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyFurtherBounces,
@@ -78,8 +78,14 @@ int vplPathsOfPass(const vplPlan* plan);
 // Passes of a path-traced picture whose number of paths is given.
 int vplCountPathPasses(const vplPlan* plan);
 
-// What the path tracer traces for a picture.
-vplPathDef vplDescribePaths(const vplPlan* plan, vplShow show);
+// What the path tracer traces for a picture. The result of VPL_STAGE_LIGHT_PATHS counts where there is one.
+vplPathDef vplDescribePaths(const vplRun* run, vplShow show);
+
+// Decides how often light paths land, where the options leave it open: runs VPL_STAGE_LIGHT_PATHS, which the plan need not have.
+vplResult vplFindLandings(const vplRun* run);
+
+// As often as was decided; once if nothing was.
+int vplCountLandings(const vplRun* run);
 
 // The mean of all paths so far.
 vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Path tracing: each pass adds paths to all pixels. --show chooses a range of bounces.
+#include "reference/light_path.h"
 #include "reference/path_trace.h"
+#include "render/runner.h"
 #include "render/stages/make.h"
 
 // A pass of large pictures takes a few seconds, too.
@@ -24,8 +26,18 @@ typedef struct Paths {
     vplPathTracer* direct; // the same paths up to their first hit; NULL: no layer needs it
 } Paths;
 
-vplPathDef vplDescribePaths(const vplPlan* plan, vplShow show)
+_Static_assert(VPL_MAX_LANDINGS == (int)VPL_MOST_LANDINGS, "the option allows what a path holds");
+
+int vplCountLandings(const vplRun* run)
 {
+    const int given = run->plan->options.path.landings;
+    const double* further = run->results[VPL_STAGE_LIGHT_PATHS];
+    return given >= 0 ? given : further != NULL && *further > VPL_FURTHER_SHARE ? VPL_MAX_LANDINGS : 1;
+}
+
+vplPathDef vplDescribePaths(const vplRun* run, vplShow show)
+{
+    const vplPlan* plan = run->plan;
     const vplRenderOptions* o = &plan->options;
     vplPathDef def = vplDefaultPathDef();
     def.camera = &plan->camera;
@@ -36,7 +48,8 @@ vplPathDef vplDescribePaths(const vplPlan* plan, vplShow show)
     def.seed = o->seed;
     def.emission = show == VPL_SHOW_PICTURE || show == VPL_SHOW_DIRECT;
     def.pixelCentres = o->path.pixel == VPL_PIXEL_CENTRE;
-    def.lastBounce = o->maxBounces >= 0 ? o->maxBounces : VPL_MAX_BOUNCES;
+    def.landings = vplCountLandings(run);
+    def.lastBounce = def.mostBounces = o->maxBounces >= 0 ? o->maxBounces : VPL_MAX_BOUNCES;
     if (show == VPL_SHOW_DIRECT) {
         def.lastBounce = 0;
     } else if (show == VPL_SHOW_INDIRECT) {
@@ -48,12 +61,33 @@ vplPathDef vplDescribePaths(const vplPlan* plan, vplShow show)
     return def;
 }
 
+vplResult vplMakeLightPaths(const vplRun* run, void** resultOut)
+{
+    double* further = vplArena_Alloc(run->arena, 1, sizeof *further);
+    TRY(vplArena_Check(run->arena));
+    *resultOut = further;
+    const vplPathDef def = vplDescribePaths(run, VPL_SHOW_PICTURE);
+    TRY(vplMeasureFurther(run->results[VPL_STAGE_GEOMETRY], &def, further));
+    vplLog(
+        run->context, VPL_LOG_INFO,
+        "%.0f %% of reflected light is found where light paths have been reflected: light paths of up to %d "
+        "landings take the %s time for the same error",
+        100 * *further, VPL_MAX_LANDINGS, *further > VPL_FURTHER_SHARE ? "shorter" : "longer");
+    return VPL_SUCCESS;
+}
+
+vplResult vplFindLandings(const vplRun* run)
+{
+    return run->plan->options.path.landings < 0 ? vplRunner_RunStage(run->runner, VPL_STAGE_LIGHT_PATHS)
+                                                : VPL_SUCCESS;
+}
+
 static vplResult createPaths(const vplRun* run, Paths* paths)
 {
     const vplPlan* plan = run->plan;
     const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
-    vplPathDef picture = vplDescribePaths(plan, plan->options.output.show),
-               direct = vplDescribePaths(plan, VPL_SHOW_DIRECT);
+    vplPathDef picture = vplDescribePaths(run, plan->options.output.show),
+               direct = vplDescribePaths(run, VPL_SHOW_DIRECT);
     picture.firstRow = direct.firstRow = run->firstRow;
     picture.endRow = direct.endRow = run->endRow;
     picture.trees = direct.trees = run->results[VPL_STAGE_EMITTER_TREES];

@@ -8,6 +8,7 @@
 #include "render/stage.h"
 
 // VPL_STAGE_NEAR_DISTANCE has a float: the metres within which surfaces see a fifth of what they see.
+// VPL_STAGE_LIGHT_PATHS has a double: the share of reflected light that vplMeasureFurther measures.
 // VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light, for a final gather of all
 // light but that of emitters, at the vertices of the patch mesh, [vertex][front, back].
 

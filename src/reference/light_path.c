@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// Based on: Eric P. Lafortune and Yves D. Willems, Bi-directional Path Tracing, Compugraphics 1993; Eric Veach, Robust Monte Carlo
+// Methods for Light Transport Simulation, 1997, chapter 10 (bidirectional path tracing) and section 5.3 (shading normals). Connections to light
+// paths find bright places that paths from the camera hardly find: the ceiling above a point light, or all that is lit through a gap.
+// On diffuse surfaces going along an edge has the same density in both directions, so that the weight of connecting the ends of an edge, relative to other
+// edges of the same path, is one over the density of going along it.
+#include "reference/light_path.h"
+#include "base/context.h"
+#include "geometry/emission.h"
+#include "math/sampling.h"
+#include "math/vec.h"
+
+// Sets of random numbers besides those of the path from the camera.
+enum { LANDING_SETS = 1 << 30, CHOICE_SETS = LANDING_SETS + VPL_MOST_LANDINGS };
+
+// The first landing. Returns false if the light path ends before it, or reflects nothing.
+static bool land(vplPathState* path, double choice, const float u[4], vplLightPath* p)
+{
+    const vplPathScene* s = path->scene;
+    vplParticle start;
+    vplHit hit;
+    if (!vplEmission_SampleParticle(s->emission, choice, u, &start)) {
+        return false;
+    }
+    path->rays++;
+    if (!vplGeometry_ClosestHit(s->geometry, &start.ray, &hit)) {
+        return false;
+    }
+    const vplEmissionSource* source = &s->emission->sources[start.source];
+    const vplLightPoint light = {source->emitter, source->triangle, start.position, start.normal};
+    vplLanding* first = &p->landings[0];
+    first->vertex = vplPathVertex_Make(s, &hit, start.ray.direction, VPL_BOUNCE_SPREAD * hit.t);
+    first->carried = (vplRgb){1, 1, 1};
+    first->ratio = 1;
+    first->edges = 0;
+    p->light = vplConnectToLight(s, &first->vertex, &light);
+    p->weights = vplConnection_Weights(s, &p->light);
+    return p->light.distance > 0;
+}
+
+// The next landing, from which light is reflected to the last one and on. Russian roulette by the light that the landings reflect.
+static bool reflect(vplPathState* path, const vplLanding* from, uint32_t set, vplRgb* reflected, vplLanding* to)
+{
+    const vplPathScene* s = path->scene;
+    float u[4];
+    vplHit hit;
+    vplPath_Draw(path, set, u);
+    const float most = fmaxf(reflected->r, fmaxf(reflected->g, reflected->b));
+    const float chance = fminf(1, most / (float)s->def.rouletteFrom);
+    if (u[2] >= chance) {
+        return false;
+    }
+    const vplVec3 direction = vplSampleCosineAround(from->vertex.normal, u[0], u[1]);
+    const vplRay ray = vplGeometry_Leave(s->geometry, &from->vertex.hit, direction);
+    path->rays++;
+    if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
+        return false;
+    }
+    to->vertex = vplPathVertex_Make(s, &hit, direction, VPL_BOUNCE_SPREAD * hit.t);
+    const double left = vplDot(direction, from->vertex.normal), flat = -vplDot(direction, to->vertex.normal),
+                 cosine = -vplDot(direction, to->vertex.shading);
+    const double density = cosine * left / (VPL_PI * hit.t * hit.t); // of the reverse
+    const vplRgb kept = vplRgbScale(1 / chance, to->vertex.rho);
+    *reflected = vplRgbMul(*reflected, kept);
+    to->carried = vplRgbMul(from->carried, kept);
+    to->ratio = from->ratio * flat / cosine;
+    to->edges = from->edges + vplHeuristic(s, from->ratio / density);
+    return density > 0 && flat > 0; // else no path from the camera goes along there
+}
+
+void vplLightPath_Follow(vplPathState* path, double choice, const float u[4], vplLightPath* p)
+{
+    const vplPathScene* s = path->scene;
+    p->count = land(path, choice, u, p) ? 1 : 0;
+    vplRgb reflected = p->count > 0 ? p->landings[0].vertex.rho : (vplRgb){0, 0, 0};
+    while (p->count > 0 && p->count < s->landings &&
+           reflect(path, &p->landings[p->count - 1], (uint32_t)(LANDING_SETS + p->count), &reflected,
+                   &p->landings[p->count])) {
+        p->count++;
+    }
+}
+
+// What a connection to a landing adds without occlusion.
+typedef struct Offer {
+    vplRadiance light;
+    double power, distance, cosine; // cosine: at the landing
+    int landing;                    // -1: none
+} Offer;
+
+static Offer connect(const vplPathState* path, const vplPathVertex* v, const vplLightPath* p, int i)
+{
+    const vplPathScene* s = path->scene;
+    const vplLanding* l = &p->landings[i];
+    const vplVec3 between = vplSub(l->vertex.hit.position, v->hit.position);
+    Offer o = {.distance = (double)vplLength(between), .landing = i};
+    const double scale = o.distance > 0 ? 1 / o.distance : 0;
+    const double cosine = scale * vplDot(between, v->shading), flat = scale * vplDot(between, v->normal);
+    o.cosine = -scale * vplDot(between, l->vertex.normal);
+    if (!(cosine > 0 && flat > 0 && o.cosine > 0)) {
+        return o;
+    }
+    const double density = cosine * o.cosine / (VPL_PI * o.distance * o.distance);
+    const double edges = l->edges + vplHeuristic(s, l->ratio / density) +
+                         vplHeuristic(s, l->ratio * flat / cosine) * path->edges[s->landings - 1 - i];
+    const double mine = p->light.particleRatio * l->ratio / density;
+    const double weight = (s->def.balanceHeuristic ? 1 : mine) /
+                          (p->weights + vplHeuristic(s, p->light.particleRatio) * edges);
+    o.light = vplRadiance_Reflect(weight, vplRgbMul(v->rho, l->carried), p->light.value);
+    o.power = o.light.r + o.light.g + o.light.b;
+    return o;
+}
+
+vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, const vplLightPath* p,
+                                  int bounce, vplRgb throughput)
+{
+    const vplPathScene* s = path->scene;
+    const vplRadiance none = {0, 0, 0};
+    float u[4] = {0};
+    if (p->count > 1) {
+        vplPath_Draw(path, (uint32_t)(CHOICE_SETS + bounce), u);
+    }
+    Offer chosen = {.landing = -1};
+    double choice = (double)u[0], total = 0;
+    for (int i = 0; i < p->count && bounce + 1 + i <= s->def.mostBounces; i++) {
+        const Offer o = connect(path, v, p, i);
+        if (!(o.power > 0)) {
+            continue;
+        }
+        total += o.power;
+        const double share = o.power / total;
+        const bool takes = choice < share;
+        choice = takes ? choice / share : (choice - share) / (1 - share);
+        chosen = takes ? o : chosen;
+    }
+    const int i = chosen.landing;
+    if (i < 0 || bounce + 1 + i < s->def.firstBounce || bounce + 1 + i > s->def.lastBounce ||
+        !vplPathVertex_Sees(path, v, p->landings[i].vertex.hit.position, chosen.distance, chosen.cosine)) {
+        return none;
+    }
+    const vplRadiance light = vplRadiance_Scale(total / chosen.power, chosen.light);
+    if (i > 0) {
+        path->further += (light.r * throughput.r + light.g * throughput.g + light.b * throughput.b) / 3;
+    }
+    return light;
+}
+
+// ---- how much light paths find by their later landings
+
+enum { PILOT_CHUNKS = 32, PILOT_SEED = 0x70696c6f74 };
+
+typedef struct Pilot {
+    vplPathScene scene;
+    double all[PILOT_CHUNKS], further[PILOT_CHUNKS]; // light that paths found
+} Pilot;
+
+static void followPilots(void* data, int chunk, int worker)
+{
+    (void)worker;
+    Pilot* p = data;
+    const uint64_t pixels = (uint64_t)p->scene.def.width * (uint64_t)p->scene.def.height;
+    enum { EACH = VPL_PILOT_PATHS / PILOT_CHUNKS };
+    for (uint64_t i = (uint64_t)chunk * EACH; i < ((uint64_t)chunk + 1) * EACH; i++) {
+        float u[4];
+        vplSobol_Sample(&p->scene.sobol, PILOT_SEED, 0, 0, (uint32_t)i, u);
+        const uint64_t pixel = (uint64_t)(((double)i + (double)u[0]) / VPL_PILOT_PATHS * (double)pixels) % pixels;
+        vplPathState path = {.scene = &p->scene, .stream = 2 * i};
+        vplRadiance light = {0, 0, 0};
+        vplPath_Follow(&path, (int)(pixel % (uint64_t)p->scene.def.width),
+                       (int)(pixel / (uint64_t)p->scene.def.width), &light);
+        p->all[chunk] += (light.r + light.g + light.b) / 3;
+        p->further[chunk] += path.further;
+    }
+}
+
+vplResult vplMeasureFurther(const vplGeometry* geometry, const vplPathDef* def, double* shareOut)
+{
+    Pilot pilot = {.all = {0}};
+    vplPathDef reflected = *def;
+    reflected.seed = PILOT_SEED;
+    reflected.emission = false;
+    reflected.landings = VPL_MOST_LANDINGS;
+    reflected.firstBounce = 1;
+    reflected.lastBounce = def->mostBounces;
+    TRY(vplPathScene_Init(&pilot.scene, geometry, &reflected));
+    const vplResult result = vplParallelForAsking(geometry->context, PILOT_CHUNKS, followPilots, &pilot);
+    double all = 0, further = 0;
+    for (int i = 0; i < PILOT_CHUNKS; i++) {
+        all += pilot.all[i];
+        further += pilot.further[i];
+    }
+    vplPathScene_Free(&pilot.scene);
+    *shareOut = all > 0 ? further / all : 0;
+    return result;
+}
