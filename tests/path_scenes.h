@@ -37,6 +37,13 @@ double radianceOf(const vplScene* scene, const vplRenderOptions* options, int ch
 #define ROOM      "examples/scenes/room.json"
 #define AREA_ROOM "examples/scenes/room-area.json"
 
+// The mean of the squared differences of all values; both are as large.
+double squaredDifference(const vplImage* a, const vplImage* b);
+
+// Traces a picture of 24x24 pixels by the scene's first camera and all its emitters.
+vplImage* traceWith(const vplScene* scene, const vplGeometry* geometry, const vplPathDef* def, int samples,
+                    vplPathStats* stats);
+
 vplImage* renderShown(const vplScene* scene, vplShow show, int bounce);
 
 #endif

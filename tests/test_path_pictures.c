@@ -41,16 +41,6 @@ TEST(PartsAddUpToThePicture, 2)
 
 // ---- error, bits, pixels
 
-static double squaredDifference(const vplImage* a, const vplImage* b)
-{
-    double squares = 0;
-    for (int i = 0; i < 3 * a->width * a->height; i++) {
-        double apart = (double)a->pixels[i] - (double)b->pixels[i];
-        squares += apart * apart;
-    }
-    return squares / (3.0 * a->width * a->height);
-}
-
 // A few bright pixels make most of the error, so a single pair of pictures proves little: the test takes
 // twelve.
 TEST(ErrorEstimatePredictsTheDifferenceOfSeeds, 2, SLOW)
@@ -84,24 +74,6 @@ TEST(ErrorEstimatePredictsTheDifferenceOfSeeds, 2, SLOW)
         assert_true(stats.errorEstimate < 0); // one sample has nothing to compare with
         vplScene_Destroy(scene);
     }
-}
-
-static vplImage* traceWith(const vplScene* scene, const vplGeometry* geometry, const vplPathDef* def,
-                           int samples, vplPathStats* stats)
-{
-    vplPathTracer* tracer;
-    vplImage* image;
-    vplPathDef d = *def;
-    d.camera = vplScene_GetCamera(scene, 0);
-    d.emitterCount = vplScene_GetEmitterCount(scene);
-    d.emitters = d.emitterCount ? vplScene_GetEmitter(scene, 0) : NULL;
-    d.width = d.height = 24;
-    assert_int_equal(vplPathTracer_Create(geometry, &d, &tracer), VPL_SUCCESS);
-    assert_int_equal(vplPathTracer_Pass(tracer, samples, NULL, NULL, 0, 1), VPL_SUCCESS);
-    assert_int_equal(vplImage_Create(geometry->context, 24, 24, &image), VPL_SUCCESS);
-    vplPathTracer_Resolve(tracer, image, stats);
-    vplPathTracer_Destroy(tracer);
-    return image;
 }
 
 // The scene has every emitter type, an area light and a smooth sphere; all sampling techniques must find the

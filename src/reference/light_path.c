@@ -39,7 +39,8 @@ static bool land(vplPathState* path, double choice, const float u[4], vplLightPa
 }
 
 // The next landing, from which light is reflected to the last one and on. Russian roulette by the light that the landings reflect.
-static bool reflect(vplPathState* path, const vplLanding* from, uint32_t set, vplRgb* reflected, vplLanding* to)
+static bool reflect(vplPathState* path, const vplLanding* from, uint32_t set, vplRgb* reflected,
+                    vplLanding* to)
 {
     const vplPathScene* s = path->scene;
     float u[4];
@@ -103,8 +104,8 @@ static Offer connect(const vplPathState* path, const vplPathVertex* v, const vpl
     const double edges = l->edges + vplHeuristic(s, l->ratio / density) +
                          vplHeuristic(s, l->ratio * flat / cosine) * path->edges[s->landings - 1 - i];
     const double mine = p->light.particleRatio * l->ratio / density;
-    const double weight = (s->def.balanceHeuristic ? 1 : mine) /
-                          (p->weights + vplHeuristic(s, p->light.particleRatio) * edges);
+    const double weight =
+        (s->def.balanceHeuristic ? 1 : mine) / (p->weights + vplHeuristic(s, p->light.particleRatio) * edges);
     o.light = vplRadiance_Reflect(weight, vplRgbMul(v->rho, l->carried), p->light.value);
     o.power = o.light.r + o.light.g + o.light.b;
     return o;
@@ -162,7 +163,8 @@ static void followPilots(void* data, int chunk, int worker)
     for (uint64_t i = (uint64_t)chunk * EACH; i < ((uint64_t)chunk + 1) * EACH; i++) {
         float u[4];
         vplSobol_Sample(&p->scene.sobol, PILOT_SEED, 0, 0, (uint32_t)i, u);
-        const uint64_t pixel = (uint64_t)(((double)i + (double)u[0]) / VPL_PILOT_PATHS * (double)pixels) % pixels;
+        const uint64_t pixel =
+            (uint64_t)(((double)i + (double)u[0]) / VPL_PILOT_PATHS * (double)pixels) % pixels;
         vplPathState path = {.scene = &p->scene, .stream = 2 * i};
         vplRadiance light = {0, 0, 0};
         vplPath_Follow(&path, (int)(pixel % (uint64_t)p->scene.def.width),

@@ -177,6 +177,12 @@ static void paths(vplRenderOptions* o)
     o->path.samples = 32;
 }
 
+static void lightPaths(vplRenderOptions* o)
+{
+    paths(o);
+    o->path.landings = 16;
+}
+
 static void secondBounce(vplRenderOptions* o)
 {
     paths(o);
@@ -330,6 +336,7 @@ static const Case CASES[] = {
     {"path-area", "room-area", 1, paths},
     {"path-point", "closed-room", 1, paths},
     {"path-bounce-2", "room", 3, secondBounce},
+    {"light-paths", "../../tests/data/shade", 9, lightPaths},
     {"ssvp-room", "room", 1, ssvp},
     {"ssvp-printed", "closed-room", 1, ssvpPrinted},
     {"ssvp-gather", "room", 1, ssvpGather},

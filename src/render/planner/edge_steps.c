@@ -110,20 +110,26 @@ vplResult vplFindEdgeSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], in
 
 // ---- tries
 
+static int pixelsOf(const vplRenderer* r)
+{
+    return r->asked.output.width * r->asked.output.height;
+}
+
 int vplCountWiderTruth(const vplRenderer* r)
 {
-    return VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
+    const int wider = VPL_WIDER_TRUTH * vplTruth_CountPixels(r->truth);
+    return wider < pixelsOf(r) ? wider : pixelsOf(r);
 }
 
 bool vplHasRoomForWiderTruth(const vplRenderer* r)
 {
-    const int pixels = vplCountWiderTruth(r);
-    return pixels <= VPL_MOST_TRUTH_PIXELS && pixels <= 0.5 * r->asked.output.width * r->asked.output.height;
+    return vplCountWiderTruth(r) <= VPL_MOST_TRUTH_PIXELS &&
+           2 * vplTruth_CountPixels(r->truth) <= pixelsOf(r);
 }
 
 vplResult vplProveEdges(vplRenderer* r, const vplErrorState* s, double asked, bool* moreOut)
 {
-    const vplEdgeNoise noise = vplEdges_Noise(r->edges, r->asked.output.width * r->asked.output.height);
+    const vplEdgeNoise noise = vplEdges_Noise(r->edges, pixelsOf(r));
     const double left = asked * asked - s->square, cost = s->path * r->edgePixels * r->edgePaths;
     const bool noisy = noise.spread > 0.5 * r->judged.spread;
     *moreOut = true;

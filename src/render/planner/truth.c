@@ -56,13 +56,13 @@ static Shares sharesOf(const vplImage* image)
                 : (Shares){1 / (6 * pixels), 1 / (6 * bright), 1 / (3 * linear), 1 / (3 * square)};
 }
 
-// The probability that a pixel is among the `wanted` ones.
+// The probability that a pixel is among the `wanted` ones, which may be all.
 static double expectedOf(const vplImage* image, const Shares* s, int x, int y, int wanted)
 {
     const double contrast = vplContrastOfPixel(image, x, y);
     const double share =
         s->even + s->bright * brightnessOf(image, x, y) + s->linear * sqrt(contrast) + s->square * contrast;
-    return fmin(1, wanted * share);
+    return wanted >= image->width * image->height ? 1 : fmin(1, wanted * share);
 }
 
 // Systematic sampling: takes a pixel where the sum of expected counts passes a whole number plus `offset`.
