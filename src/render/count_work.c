@@ -175,6 +175,9 @@ static void addPicture(const Scale* s, vplWork* w)
 
 // Rays of paths: to a surface, to an emitter from there, and on. Paths end where they leave the scene; those that carry
 // less than a quarter of their light in all colours end by chance.
+static const double LONG_LIGHT_PATHS =
+    1.7; // time of paths over that with one landing (1.5 in room, 2.1 in shade)
+
 static void addPaths(const Scale* s, double paths, vplWork* w)
 {
     const double stays = s->probe.enclosed, kept = fmin(sqrt(s->reflectance), 0.98);
@@ -186,7 +189,8 @@ static void addPaths(const Scale* s, double paths, vplWork* w)
         arrive *= stays * (k < whole ? 1 : kept);
     }
     const double rays = paths * (1 + s->probe.seen * (2 * vertices - 1));
-    w->counts[PATH_RAY] += rays * s->pathDepth * (s->plan->splitsLight ? 1.3 : 1);
+    w->counts[PATH_RAY] += rays * s->pathDepth * (s->plan->splitsLight ? 1.3 : 1) *
+                           (s->plan->options.path.landings > 1 ? LONG_LIGHT_PATHS : 1);
 }
 
 static void addMaps(double faces, double size, const Scale* s, vplWork* w)

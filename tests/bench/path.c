@@ -68,6 +68,31 @@ static void rouletteAt64th(vplPathDef* def)
     def->rouletteFrom = 1.0 / 64;
 }
 
+static void noLanding(vplPathDef* def)
+{
+    def->landings = 0;
+}
+
+static void twoLandings(vplPathDef* def)
+{
+    def->landings = 2;
+}
+
+static void fourLandings(vplPathDef* def)
+{
+    def->landings = 4;
+}
+
+static void eightLandings(vplPathDef* def)
+{
+    def->landings = 8;
+}
+
+static void mostLandings(vplPathDef* def)
+{
+    def->landings = VPL_MOST_LANDINGS;
+}
+
 static void eachEmitter(vplPathDef* def)
 {
     def->emittersOfTree = def->trianglesOfTree = INT_MAX;
@@ -97,6 +122,12 @@ static const Line LINES[] = {
     {"roulette", "below a half", rouletteAtHalf},
     {"roulette", "below an eighth", rouletteAtEighth},
     {"roulette", "below a 64th", rouletteAt64th},
+    {"landings", "one", asItIs},
+    {"landings", "none", noLanding},
+    {"landings", "two", twoLandings},
+    {"landings", "four", fourLandings},
+    {"landings", "eight", eightLandings},
+    {"landings", "sixteen", mostLandings},
     {"lamps", "all, triangles by power", eachEmitter},
     {"lamps", "by power", byPower},
     {"lamps", "from a tree", tree},
