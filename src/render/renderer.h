@@ -155,7 +155,8 @@ vplResult vplJudge(vplRenderer* renderer, double asked, bool plansAgain, double 
 // Traces as many paths of the truth again as there are, and keeps the spread that it had.
 vplResult vplRefineTruth(vplRenderer* renderer);
 
-// Replaces the truth by one of about VPL_WIDER_TRUTH times as many pixels, with the first paths through them.
+// Replaces the truth by one of about VPL_WIDER_TRUTH times as many pixels, and at least as many paths in all: where rare paths carry
+// light, the first paths alone confirmed errors that were too large (hall at 20 %: three of eleven pictures had up to 21.6 %).
 #define VPL_WIDER_TRUTH 4
 vplResult vplWidenTruth(vplRenderer* renderer);
 

@@ -128,6 +128,12 @@ void vplForgetTruth(vplRenderer* r)
     r->truth = NULL;
 }
 
+// Through all pixels.
+static double countPaths(const vplTruth* truth)
+{
+    return (double)vplTruth_CountPixels(truth) * vplTruth_Paths(truth);
+}
+
 vplResult vplWidenTruth(vplRenderer* r)
 {
     vplImage* image = NULL;
@@ -139,9 +145,13 @@ vplResult vplWidenTruth(vplRenderer* r)
     TRY(result);
     vplLog(r->runner.run.context, VPL_LOG_INFO, "compares %d pixels with paths instead of %d",
            vplTruth_CountPixels(wider), vplTruth_CountPixels(r->truth));
+    const double paths = countPaths(r->truth);
     vplForgetTruth(r);
     r->truth = wider;
     r->spreadBefore = INFINITY;
+    while (countPaths(r->truth) < paths) {
+        TRY(vplTruth_Refine(&r->runner.run, r->truth));
+    }
     vplRun_AddTime(&r->runner.run, "truth", start);
     return VPL_SUCCESS;
 }
