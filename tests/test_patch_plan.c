@@ -391,22 +391,27 @@ TEST(ATruthWithMorePixelsIsSaved, 2, SLOW)
     vplRenderOptions o = optionsFor(0.02);
     vplRenderer *r, *loaded;
     bool done = false;
-    o.output.width = 80;
-    o.output.height = 48;
+    o.output.width = 112;
+    o.output.height = 64;
     assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
     // A plan that begins has no picture yet.
     for (int i = 0; i < PASSES || r->truth == NULL || r->done == 0; i++) {
         assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
         assert_false(done);
     }
-    const int pixels = vplTruth_CountPixels(r->truth);
+    for (int i = 0; i < 2; i++) { // a few of the first paths through more pixels would tell less
+        assert_int_equal(vplRefineTruth(r), VPL_SUCCESS);
+    }
+    const int pixels = vplTruth_CountPixels(r->truth), paths = vplTruth_Paths(r->truth);
     assert_int_equal(vplWidenTruth(r), VPL_SUCCESS);
     assert_in_range(vplTruth_CountPixels(r->truth), 2 * pixels, VPL_WIDER_TRUTH * pixels);
+    assert_in_range(vplTruth_Paths(r->truth) * vplTruth_CountPixels(r->truth), pixels * paths,
+                    2 * pixels * paths);
     assert_int_equal(vplRenderer_Save(r, path), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Create(scene, &o, &loaded), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Load(loaded, path, &done), VPL_SUCCESS);
     assert_int_equal(vplTruth_CountPixels(r->truth), vplTruth_CountPixels(loaded->truth));
-    for (int i = 0; i < MORE; i++) {
+    for (int i = 0; i < MORE || r->done == 0; i++) { // a plan that begins has no picture yet
         bool ends[2];
         assert_int_equal(vplRenderer_Step(r, &ends[0]), VPL_SUCCESS);
         assert_int_equal(vplRenderer_Step(loaded, &ends[1]), VPL_SUCCESS);
