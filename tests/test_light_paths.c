@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tests of the connections of paths from the camera with the landings of paths from lights.
+// Tests of the connections of paths from the camera with the vertices of paths from lights.
 #include "path_scenes.h"
 
 #include "reference/light_path.h"
@@ -27,7 +27,7 @@ static vplScene* fullRoom(vplContext* context)
 // their triangles, so that a light path that forgets this has another mean.
 TEST(LightPathsOfAnyLengthFindTheSameLight, 2, SLOW)
 {
-    static const int LANDINGS[] = {0, 2, 3, VPL_MOST_LANDINGS};
+    static const int VERTICES[] = {0, 2, 3, VPL_MOST_LIGHT_VERTICES};
     vplScene* scene = fullRoom(context);
     vplGeometry* geometry;
     vplPathStats stats, other;
@@ -38,9 +38,9 @@ TEST(LightPathsOfAnyLengthFindTheSameLight, 2, SLOW)
         def.lastBounce = def.mostBounces = bounces;
         def.firstBounce = 1;
         vplImage* first = traceWith(scene, geometry, &def, 1024, &stats);
-        for (size_t i = 0; i < sizeof LANDINGS / sizeof *LANDINGS; i++) {
+        for (size_t i = 0; i < sizeof VERTICES / sizeof *VERTICES; i++) {
             def.seed = 1 + (uint64_t)i;
-            def.landings = LANDINGS[i];
+            def.lightVertices = VERTICES[i];
             vplImage* image = traceWith(scene, geometry, &def, 512, &other);
             const double predicted =
                 stats.errorEstimate * stats.errorEstimate + other.errorEstimate * other.errorEstimate;
@@ -97,7 +97,7 @@ TEST(LightPathsKnowBothNormalsOfASurface, 2)
         vplPathDef def = vplDefaultPathDef();
         def.firstBounce = def.lastBounce = def.mostBounces = 2;
         def.seed = (uint64_t)i;
-        def.landings = 1 + i;
+        def.lightVertices = 1 + i;
         images[i] = traceWith(scene, geometry, &def, 1024, &stats[i]);
     }
     const double predicted = sqrt(stats[0].errorEstimate * stats[0].errorEstimate +
@@ -116,10 +116,10 @@ TEST(AFurnaceGlowsAlikeByLongLightPaths, 2)
     addRoom(scene, addGrey(scene, 0.5f, 2));
     addCamera(scene, (vplVec3){0.3f, 0.1f, 0.2f}, (vplVec3){-1, -0.4f, -0.8f}, 1.5);
     vplRenderOptions options = pathOptions(8, 256);
-    options.path.landings = VPL_MAX_LANDINGS;
+    options.path.lightVertices = VPL_MAX_LIGHT_VERTICES;
     vplImage* image = renderScene(scene, &options, NULL);
     assertNear(meanOfImage(image, 0), 4, 4 * 0.0045, "mean",
-               0); // with one landing five standard deviations are 0.0045
+               0); // with one vertex five standard deviations are 0.0045
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
 }
@@ -131,7 +131,7 @@ TEST(BouncesOfLongLightPathsAddUp, 2)
     vplScene* scene = openScene(context, HARD_ROOM);
     vplRenderOptions options = pathOptions(SIZE, 16);
     options.maxBounces = BOUNCES;
-    options.path.landings = VPL_MAX_LANDINGS;
+    options.path.lightVertices = VPL_MAX_LIGHT_VERTICES;
     vplImage* all = renderScene(scene, &options, NULL);
     static double sums[3 * SIZE * SIZE];
     memset(sums, 0, sizeof sums);
@@ -151,7 +151,7 @@ TEST(BouncesOfLongLightPathsAddUp, 2)
     vplScene_Destroy(scene);
 }
 
-// The error by one landing is several times as large, for less than twice the rays.
+// The error by one vertex is several times as large, for less than twice the rays.
 TEST(LongLightPathsFindTheWayThroughASlit, 2, SLOW)
 {
     vplScene* scene = openScene(context, HARD_ROOM);
@@ -161,7 +161,7 @@ TEST(LongLightPathsFindTheWayThroughASlit, 2, SLOW)
     double variance[2] = {0};
     for (int i = 0; i < 2; i++) {
         vplPathDef def = vplDefaultPathDef();
-        def.landings = i == 0 ? 1 : VPL_MOST_LANDINGS;
+        def.lightVertices = i == 0 ? 1 : VPL_MOST_LIGHT_VERTICES;
         vplImage* images[2];
         for (int k = 0; k < 2; k++) {
             def.seed = (uint64_t)k;
@@ -187,18 +187,18 @@ static const vplDecision* decisionOn(const vplPlan* plan, const char* name)
     return NULL;
 }
 
-// Long light paths where a few hundred paths say that they pay, else one landing; what is given stays.
+// Long light paths where a few hundred paths say that they pay, else one vertex; what is given stays.
 TEST(PlansFollowLightAsFarAsTheSceneRequires, 2)
 {
     static const struct {
         const char* scene;
         const char* words;
-        int landings;
+        int vertices;
         const char* why;
-    } ROWS[] = {{HARD_ROOM, "", VPL_MAX_LANDINGS,
+    } ROWS[] = {{HARD_ROOM, "", VPL_MAX_LIGHT_VERTICES,
                  "of reflected light is found where light paths have been reflected"},
-                {HARD_ROOM, "--seed 77", VPL_MAX_LANDINGS, "of reflected light is found"},
-                {HARD_ROOM, "--light-landings 3", 3, NULL},
+                {HARD_ROOM, "--seed 77", VPL_MAX_LIGHT_VERTICES, "of reflected light is found"},
+                {HARD_ROOM, "--light-vertices 3", 3, NULL},
                 {HARD_ROOM, "--spp 1", 1, "there are few paths"},
                 {HARD_ROOM, "--max-bounces 0", 1, "the picture shows no reflected light"},
                 {HARD_ROOM, "--show direct", 1, "the picture shows no reflected light"},
@@ -217,8 +217,8 @@ TEST(PlansFollowLightAsFarAsTheSceneRequires, 2)
         }
         vplPlan* plan;
         assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
-        assert_int_equal(plan->options.path.landings, ROWS[i].landings);
-        const vplDecision* d = decisionOn(plan, "light-landings");
+        assert_int_equal(plan->options.path.lightVertices, ROWS[i].vertices);
+        const vplDecision* d = decisionOn(plan, "light-vertices");
         assert_true((d == NULL) == (ROWS[i].why == NULL));
         assert_true(d == NULL || strstr(d->why, ROWS[i].why) != NULL);
         vplPlan_Destroy(plan);
@@ -227,7 +227,7 @@ TEST(PlansFollowLightAsFarAsTheSceneRequires, 2)
 }
 
 // The share is that of the light and not of the seed; it is 0 where no light is reflected.
-TEST(TheShareOfLaterLandingsIsMeasured, 2)
+TEST(TheShareOfLaterVerticesIsMeasured, 2)
 {
     static const struct {
         const char* scene;

@@ -73,7 +73,7 @@ typedef enum vplAov {
 // Upper limits of paths per pixel and of bounces per path.
 enum {
     VPL_MAX_SAMPLES = 1 << 24,
-    VPL_MAX_LANDINGS = 16,
+    VPL_MAX_LIGHT_VERTICES = 16,
     VPL_MAX_BOUNCES = 1 << 16,
     VPL_MAX_EDGE_PIXELS = 1 << 28
 };

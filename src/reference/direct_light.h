@@ -27,7 +27,7 @@ typedef struct vplLightPoint {
 // The unobstructed connection of a vertex with a point on a light.
 typedef struct vplConnection {
     vplRadiance value; // that the vertex reflects, over the density of choosing the point
-    // Densities with which BSDF sampling finds the point, and with which a light path begins there and lands at the vertex, over
+    // Densities with which BSDF sampling finds the point, and with which a light path begins there and goes to the vertex, over
     // that of choosing the point.
     double bsdfRatio, particleRatio;
     double edges;                   // of the vertex, of all techniques

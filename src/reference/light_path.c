@@ -11,10 +11,10 @@
 #include "math/vec.h"
 
 // Sets of random numbers besides those of the path from the camera.
-enum { LANDING_SETS = 1 << 30, CHOICE_SETS = LANDING_SETS + VPL_MOST_LANDINGS };
+enum { VERTEX_SETS = 1 << 30, CHOICE_SETS = VERTEX_SETS + VPL_MOST_LIGHT_VERTICES };
 
-// The first landing. Returns false if the light path ends before it, or reflects nothing.
-static bool land(vplPathState* path, double choice, const float u[4], vplLightPath* p)
+// The first vertex. Returns false if the light path ends before it, or reflects nothing.
+static bool begin(vplPathState* path, double choice, const float u[4], vplLightPath* p)
 {
     const vplPathScene* s = path->scene;
     vplParticle start;
@@ -28,19 +28,19 @@ static bool land(vplPathState* path, double choice, const float u[4], vplLightPa
     }
     const vplEmissionSource* source = &s->emission->sources[start.source];
     const vplLightPoint light = {source->emitter, source->triangle, start.position, start.normal};
-    vplLanding* first = &p->landings[0];
-    first->vertex = vplPathVertex_Make(s, &hit, start.ray.direction, VPL_BOUNCE_SPREAD * hit.t);
+    vplLightVertex* first = &p->vertices[0];
+    first->at = vplPathVertex_Make(s, &hit, start.ray.direction, VPL_BOUNCE_SPREAD * hit.t);
     first->carried = (vplRgb){1, 1, 1};
     first->ratio = 1;
     first->edges = 0;
-    p->light = vplConnectToLight(s, &first->vertex, &light);
+    p->light = vplConnectToLight(s, &first->at, &light);
     p->weights = vplConnection_Weights(s, &p->light);
     return p->light.distance > 0;
 }
 
-// The next landing, from which light is reflected to the last one and on. Russian roulette by the light that the landings reflect.
-static bool reflect(vplPathState* path, const vplLanding* from, uint32_t set, vplRgb* reflected,
-                    vplLanding* to)
+// The next vertex. Russian roulette ends paths whose vertices reflect little light.
+static bool reflect(vplPathState* path, const vplLightVertex* from, uint32_t set, vplRgb* reflected,
+                    vplLightVertex* to)
 {
     const vplPathScene* s = path->scene;
     float u[4];
@@ -51,17 +51,17 @@ static bool reflect(vplPathState* path, const vplLanding* from, uint32_t set, vp
     if (u[2] >= chance) {
         return false;
     }
-    const vplVec3 direction = vplSampleCosineAround(from->vertex.normal, u[0], u[1]);
-    const vplRay ray = vplGeometry_Leave(s->geometry, &from->vertex.hit, direction);
+    const vplVec3 direction = vplSampleCosineAround(from->at.normal, u[0], u[1]);
+    const vplRay ray = vplGeometry_Leave(s->geometry, &from->at.hit, direction);
     path->rays++;
     if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
         return false;
     }
-    to->vertex = vplPathVertex_Make(s, &hit, direction, VPL_BOUNCE_SPREAD * hit.t);
-    const double left = vplDot(direction, from->vertex.normal), flat = -vplDot(direction, to->vertex.normal),
-                 cosine = -vplDot(direction, to->vertex.shading);
+    to->at = vplPathVertex_Make(s, &hit, direction, VPL_BOUNCE_SPREAD * hit.t);
+    const double left = vplDot(direction, from->at.normal), flat = -vplDot(direction, to->at.normal),
+                 cosine = -vplDot(direction, to->at.shading);
     const double density = cosine * left / (VPL_PI * hit.t * hit.t); // of the reverse
-    const vplRgb kept = vplRgbScale(1 / chance, to->vertex.rho);
+    const vplRgb kept = vplRgbScale(1 / chance, to->at.rho);
     *reflected = vplRgbMul(*reflected, kept);
     to->carried = vplRgbMul(from->carried, kept);
     to->ratio = from->ratio * flat / cosine;
@@ -72,37 +72,37 @@ static bool reflect(vplPathState* path, const vplLanding* from, uint32_t set, vp
 void vplLightPath_Follow(vplPathState* path, double choice, const float u[4], vplLightPath* p)
 {
     const vplPathScene* s = path->scene;
-    p->count = land(path, choice, u, p) ? 1 : 0;
-    vplRgb reflected = p->count > 0 ? p->landings[0].vertex.rho : (vplRgb){0, 0, 0};
-    while (p->count > 0 && p->count < s->landings &&
-           reflect(path, &p->landings[p->count - 1], (uint32_t)(LANDING_SETS + p->count), &reflected,
-                   &p->landings[p->count])) {
+    p->count = begin(path, choice, u, p) ? 1 : 0;
+    vplRgb reflected = p->count > 0 ? p->vertices[0].at.rho : (vplRgb){0, 0, 0};
+    while (p->count > 0 && p->count < s->lightVertices &&
+           reflect(path, &p->vertices[p->count - 1], (uint32_t)(VERTEX_SETS + p->count), &reflected,
+                   &p->vertices[p->count])) {
         p->count++;
     }
 }
 
-// What a connection to a landing adds without occlusion.
+// What a connection to a vertex of the light path adds without occlusion.
 typedef struct Offer {
     vplRadiance light;
-    double power, distance, cosine; // cosine: at the landing
-    int landing;                    // -1: none
+    double power, distance, cosine; // cosine: at this vertex
+    int vertex;                     // -1: none
 } Offer;
 
 static Offer connect(const vplPathState* path, const vplPathVertex* v, const vplLightPath* p, int i)
 {
     const vplPathScene* s = path->scene;
-    const vplLanding* l = &p->landings[i];
-    const vplVec3 between = vplSub(l->vertex.hit.position, v->hit.position);
-    Offer o = {.distance = (double)vplLength(between), .landing = i};
+    const vplLightVertex* l = &p->vertices[i];
+    const vplVec3 between = vplSub(l->at.hit.position, v->hit.position);
+    Offer o = {.distance = (double)vplLength(between), .vertex = i};
     const double scale = o.distance > 0 ? 1 / o.distance : 0;
     const double cosine = scale * vplDot(between, v->shading), flat = scale * vplDot(between, v->normal);
-    o.cosine = -scale * vplDot(between, l->vertex.normal);
+    o.cosine = -scale * vplDot(between, l->at.normal);
     if (!(cosine > 0 && flat > 0 && o.cosine > 0)) {
         return o;
     }
     const double density = cosine * o.cosine / (VPL_PI * o.distance * o.distance);
     const double edges = l->edges + vplHeuristic(s, l->ratio / density) +
-                         vplHeuristic(s, l->ratio * flat / cosine) * path->edges[s->landings - 1 - i];
+                         vplHeuristic(s, l->ratio * flat / cosine) * path->edges[s->lightVertices - 1 - i];
     const double mine = p->light.particleRatio * l->ratio / density;
     const double weight =
         (s->def.balanceHeuristic ? 1 : mine) / (p->weights + vplHeuristic(s, p->light.particleRatio) * edges);
@@ -120,7 +120,7 @@ vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, co
     if (p->count > 1) {
         vplPath_Draw(path, (uint32_t)(CHOICE_SETS + bounce), u);
     }
-    Offer chosen = {.landing = -1};
+    Offer chosen = {.vertex = -1};
     double choice = (double)u[0], total = 0;
     for (int i = 0; i < p->count && bounce + 1 + i <= s->def.mostBounces; i++) {
         const Offer o = connect(path, v, p, i);
@@ -133,9 +133,9 @@ vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, co
         choice = takes ? choice / share : (choice - share) / (1 - share);
         chosen = takes ? o : chosen;
     }
-    const int i = chosen.landing;
+    const int i = chosen.vertex;
     if (i < 0 || bounce + 1 + i < s->def.firstBounce || bounce + 1 + i > s->def.lastBounce ||
-        !vplPathVertex_Sees(path, v, p->landings[i].vertex.hit.position, chosen.distance, chosen.cosine)) {
+        !vplPathVertex_Sees(path, v, p->vertices[i].at.hit.position, chosen.distance, chosen.cosine)) {
         return none;
     }
     const vplRadiance light = vplRadiance_Scale(total / chosen.power, chosen.light);
@@ -145,7 +145,7 @@ vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, co
     return light;
 }
 
-// ---- how much light paths find by their later landings
+// ---- how much light is found at later vertices of light paths
 
 enum { PILOT_CHUNKS = 32, PILOT_SEED = 0x70696c6f74 };
 
@@ -180,7 +180,7 @@ vplResult vplMeasureFurther(const vplGeometry* geometry, const vplPathDef* def, 
     vplPathDef reflected = *def;
     reflected.seed = PILOT_SEED;
     reflected.emission = false;
-    reflected.landings = VPL_MOST_LANDINGS;
+    reflected.lightVertices = VPL_MOST_LIGHT_VERTICES;
     reflected.firstBounce = 1;
     reflected.lastBounce = def->mostBounces;
     TRY(vplPathScene_Init(&pilot.scene, geometry, &reflected));

@@ -6,33 +6,33 @@
 #include "reference/direct_light.h"
 
 // A surface that a light path has met.
-typedef struct vplLanding {
-    vplPathVertex vertex;
-    // The light that is reflected from here and from all landings before it but the first, over that which the first reflects.
+typedef struct vplLightVertex {
+    vplPathVertex at;
+    // The product of the reflectances of all vertices so far but the first, over the probabilities that the path went on.
     vplRgb carried;
-    // The density of the landings, over that with which a path from the camera finds them in reverse; differs from 1 by
-    // shading normals.
+    // The density of these vertices, over that with which a path from the camera finds them in reverse; differs from 1 where
+    // normals are interpolated.
     double ratio;
-    double edges; // as of vplPathState, of the edges between landings so far
-} vplLanding;
+    double edges; // as of vplPathState, of the edges between vertices so far
+} vplLightVertex;
 
 typedef struct vplLightPath {
-    int count;           // of landings; 0: there is no path
-    vplConnection light; // of the first landing with the light
+    int count;           // of vertices; 0: there is no path
+    vplConnection light; // of the first vertex with the light
     double weights;      // of light sampling and BSDF sampling there
-    vplLanding landings[VPL_MOST_LANDINGS];
+    vplLightVertex vertices[VPL_MOST_LIGHT_VERTICES];
 } vplLightPath;
 
 // Follows a path from a light that `choice` selects, in a direction that u selects.
 void vplLightPath_Follow(vplPathState* path, double choice, const float u[4], vplLightPath* out);
 
 // Radiance that comes from the light path and is reflected at the vertex, after `bounce` bounces from the camera and with `throughput` on
-// the way to it. The vertex connects to one landing, which is chosen by what each would add without occlusion.
+// the way to it. The vertex connects to one vertex of the light path, which is chosen by what each would add without occlusion.
 vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* vertex, const vplLightPath* light,
                                   int bounce, vplRgb throughput);
 
-// Where paths find more than this share of reflected light at landings after the first, light paths of VPL_MOST_LANDINGS landings have the
-// smaller error in the same time, else those of one. Share, and squared error times time over that with one landing: corridor 0.77, 0.18; shade
+// Where paths find more than this share of reflected light at vertices of light paths after the first, light paths of VPL_MOST_LIGHT_VERTICES have the
+// smaller error in the same time, else those of one vertex. Share, and squared error times time over that with one vertex: corridor 0.77, 0.18; shade
 // 0.66, 0.05; hall 0.38, 0.82; door-ajar 0.29, 1.1; cornell-area 0.20, 1.4; boxes 0.16, 1.4.
 #define VPL_FURTHER_SHARE (1.0 / 3)
 

@@ -35,7 +35,7 @@ static bool survives(const vplPathState* path, uint32_t set, vplRgb* throughput)
     return true;
 }
 
-// The next vertex. Going there had a density per square metre, which is the weight of connecting the two instead. A light path that lands at
+// The next vertex. Going there had a density per square metre, which is the weight of connecting the two instead. A light path that comes to
 // the vertex before leaves it with the cosine of its normal, and not of the shading normal.
 static vplPathVertex arrive(vplPathState* path, const vplPathVertex* from, const vplHit* hit,
                             vplVec3 direction)
@@ -45,10 +45,10 @@ static vplPathVertex arrive(vplPathState* path, const vplPathVertex* from, const
     const double flat = vplDot(direction, from->normal), cosine = vplDot(direction, from->shading);
     const double density = cosine * -(double)vplDot(direction, v.normal) / (VPL_PI * hit->t * hit->t);
     const double ratio = cosine > 0 ? vplHeuristic(s, flat / cosine) : 0, edge = vplHeuristic(s, 1 / density);
-    for (int n = s->landings; n > 0; n--) {
+    for (int n = s->lightVertices; n > 0; n--) {
         path->edges[n] = fmin(ratio * path->edges[n - 1] + edge, DBL_MAX);
     }
-    v.edges = path->edges[s->landings];
+    v.edges = path->edges[s->lightVertices];
     return v;
 }
 
@@ -123,7 +123,7 @@ void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
     }
     vplLightPath light;
     light.count = 0;
-    if (s->landings > 0) {
+    if (s->lightVertices > 0) {
         vplPath_Draw(path, LIGHT_PATH_SET, start);
         vplLightPath_Follow(path, (double)u[2], start, &light);
     }

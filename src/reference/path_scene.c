@@ -11,7 +11,7 @@ vplPathDef vplDefaultPathDef(void)
                         .mostBounces = 1 << 16,
                         .emission = true,
                         .techniques = VPL_PATH_ALL,
-                        .landings = 1,
+                        .lightVertices = 1,
                         .rouletteFrom = 0.25,
                         .emittersOfTree = VPL_PATH_EMITTERS_OF_TREE,
                         .trianglesOfTree = VPL_PATH_TRIANGLES_OF_TREE};
@@ -49,8 +49,10 @@ vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const 
     s->scaleY = sine / cosine;
     s->pixelWidth = (float)(2 * s->scaleY / def->height);
     s->scaleX = s->scaleY * def->width / def->height;
-    const bool lands = def->techniques & VPL_PATH_PARTICLES && def->lastBounce > 0;
-    s->landings = !lands ? 0 : def->landings < def->mostBounces ? def->landings : def->mostBounces;
+    const bool wanted = def->techniques & VPL_PATH_PARTICLES && def->lastBounce > 0;
+    s->lightVertices = !wanted                                 ? 0
+                       : def->lightVertices < def->mostBounces ? def->lightVertices
+                                                               : def->mostBounces;
     TRY(findTrees(s));
     s->def.camera = NULL;
     s->def.emitters = NULL;

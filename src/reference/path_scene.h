@@ -23,9 +23,9 @@ enum {
 // their bits.
 enum { VPL_PATH_EMITTERS_OF_TREE = 64, VPL_PATH_TRIANGLES_OF_TREE = 32 };
 
-// More landings than 8 gain little: squared error times time is 0.08 and 0.05 of that of one landing with 8 and 16 in shade, 0.19 and
+// More than 8 vertices gain little: squared error times time is 0.08 and 0.05 of that of one vertex with 8 and 16 in shade, 0.19 and
 // 0.18 in corridor, 0.81 and 0.81 in hall.
-enum { VPL_MOST_LANDINGS = 16 };
+enum { VPL_MOST_LIGHT_VERTICES = 16 };
 
 typedef struct vplPathDef {
     const vplCameraDef* camera;
@@ -42,8 +42,8 @@ typedef struct vplPathDef {
     uint64_t seed;
     // VPL_PATH_..., default VPL_PATH_ALL. Lights that a path cannot hit are sampled in any case.
     int techniques;
-    // Surfaces that a light path meets at most, and to which paths connect: 0 to VPL_MOST_LANDINGS; default 1.
-    int landings;
+    // Vertices of a light path at most, to which paths connect: 0 to VPL_MOST_LIGHT_VERTICES; default 1.
+    int lightVertices;
     bool balanceHeuristic; // weight by the balance heuristic instead of the power heuristic; default false
     bool random;           // independent random numbers instead of Sobol's points; default false
     double rouletteFrom;   // paths with a throughput below this may end; default 0.25
@@ -64,7 +64,7 @@ typedef struct vplPathScene {
     vplPathDef def;            // without the camera and the emitters, which need not outlive it
     vplCameraDef camera;
     vplSobol sobol;
-    int landings;                // of light paths; 0 without them
+    int lightVertices;           // of light paths; 0 without them
     float pixelWidth;            // at a depth of one metre, metres
     vplVec3 right, up, forward;  // of the camera
     double scaleX, scaleY;       // tangents of its half-angles
@@ -112,11 +112,11 @@ typedef struct vplPathState {
     uint64_t stream; // of its numbers: one for each half of a pixel's samples
     uint32_t index;  // of the path in the stream
     int64_t rays;    // cast so far
-    // Radiance found at landings of light paths after the first, mean over red, green and blue, of the bounces that count.
+    // Radiance found at vertices of light paths after the first, mean over red, green and blue, of the bounces that count.
     double further;
-    // [n]: the sum of the weights of connecting at one of the last n edges instead, where a light path lands n times, over that of going
+    // [n]: the sum of the weights of connecting at one of the last n edges instead, to a light path of n vertices, over that of going
     // on to its light.
-    double edges[VPL_MOST_LANDINGS + 1];
+    double edges[VPL_MOST_LIGHT_VERTICES + 1];
 } vplPathState;
 
 // Draws the four numbers in [0, 1) of set `set` of the path.
@@ -141,7 +141,7 @@ typedef struct vplPathVertex {
     vplVec3 normal;  // of the surface, on the side that the path came from
     vplVec3 shading; // normal to shade with, on the same side
     vplRgb rho;
-    double edges; // the path's, for all landings of a light path
+    double edges; // the path's, for light paths of all their vertices
 } vplPathVertex;
 
 // `width`: diameter, metres, of the cone around the ray in `direction`, of any length.

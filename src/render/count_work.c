@@ -176,7 +176,7 @@ static void addPicture(const Scale* s, vplWork* w)
 // Rays of paths: to a surface, to an emitter from there, and on. Paths end where they leave the scene; those that carry
 // less than a quarter of their light in all colours end by chance.
 static const double LONG_LIGHT_PATHS =
-    1.7; // time of paths over that with one landing (1.5 in room, 2.1 in shade)
+    1.7; // time of paths over that with light paths of one vertex (1.5 in room, 2.1 in shade)
 
 static void addPaths(const Scale* s, double paths, vplWork* w)
 {
@@ -190,7 +190,7 @@ static void addPaths(const Scale* s, double paths, vplWork* w)
     }
     const double rays = paths * (1 + s->probe.seen * (2 * vertices - 1));
     w->counts[PATH_RAY] += rays * s->pathDepth * (s->plan->splitsLight ? 1.3 : 1) *
-                           (s->plan->options.path.landings > 1 ? LONG_LIGHT_PATHS : 1);
+                           (s->plan->options.path.lightVertices > 1 ? LONG_LIGHT_PATHS : 1);
 }
 
 static void addMaps(double faces, double size, const Scale* s, vplWork* w)

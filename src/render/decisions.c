@@ -387,20 +387,20 @@ static void decideGbuffer(const vplRunner* r, vplPlan* p)
                       vplTrianglesPerPixel(r, o) > SHARED_TRIANGLES_PER_PIXEL;
 }
 
-static vplResult decideLandings(vplRunner* r, vplPlan* p)
+static vplResult decideLightVertices(vplRunner* r, vplPlan* p)
 {
     char why[VPL_PLAN_TEXT];
-    if (p->options.path.landings >= 0) {
+    if (p->options.path.lightVertices >= 0) {
         return VPL_SUCCESS;
     }
     if (!VPL_STAGES[VPL_STAGE_LIGHT_PATHS].isNeeded(p, why)) {
-        p->options.path.landings = 1;
-        vplDecide(p, "light-landings", "%s", why);
+        p->options.path.lightVertices = 1;
+        vplDecide(p, "light-vertices", "%s", why);
         return VPL_SUCCESS;
     }
-    TRY(vplFindLandings(&r->run));
-    p->options.path.landings = vplCountLandings(&r->run);
-    vplDecide(p, "light-landings",
+    TRY(vplFindLightVertices(&r->run));
+    p->options.path.lightVertices = vplCountLightVertices(&r->run);
+    vplDecide(p, "light-vertices",
               "%.0f %% of reflected light is found where light paths have been reflected",
               100 * *(const double*)r->run.results[VPL_STAGE_LIGHT_PATHS]);
     return VPL_SUCCESS;
@@ -417,7 +417,7 @@ vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
     }
     decideClamp(r, p);
     if (p->options.method == VPL_METHOD_PATH) {
-        TRY(decideLandings(r, p));
+        TRY(decideLightVertices(r, p));
     }
     if (p->options.method == VPL_METHOD_RADIOSITY) {
         TRY(vplDecidePatches(r, p));

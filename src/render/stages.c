@@ -262,7 +262,7 @@ static bool needsLightPaths(const vplPlan* p, char* why)
 {
     const vplRenderOptions* o = &p->options;
     const double paths = (double)o->output.width * o->output.height * o->path.samples;
-    const char* problem = o->path.landings >= 0                    ? "--light-landings is given"
+    const char* problem = o->path.lightVertices >= 0               ? "--light-vertices is given"
                           : o->maxBounces == 0                     ? NOT_REFLECTED
                           : o->output.show == VPL_SHOW_DIRECT      ? NOT_REFLECTED
                           : paths < WORTH_PILOTS * VPL_PILOT_PATHS ? "there are few paths"

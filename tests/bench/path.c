@@ -68,29 +68,29 @@ static void rouletteAt64th(vplPathDef* def)
     def->rouletteFrom = 1.0 / 64;
 }
 
-static void noLanding(vplPathDef* def)
+static void noVertex(vplPathDef* def)
 {
-    def->landings = 0;
+    def->lightVertices = 0;
 }
 
-static void twoLandings(vplPathDef* def)
+static void twoVertices(vplPathDef* def)
 {
-    def->landings = 2;
+    def->lightVertices = 2;
 }
 
-static void fourLandings(vplPathDef* def)
+static void fourVertices(vplPathDef* def)
 {
-    def->landings = 4;
+    def->lightVertices = 4;
 }
 
-static void eightLandings(vplPathDef* def)
+static void eightVertices(vplPathDef* def)
 {
-    def->landings = 8;
+    def->lightVertices = 8;
 }
 
-static void mostLandings(vplPathDef* def)
+static void mostVertices(vplPathDef* def)
 {
-    def->landings = VPL_MOST_LANDINGS;
+    def->lightVertices = VPL_MOST_LIGHT_VERTICES;
 }
 
 static void eachEmitter(vplPathDef* def)
@@ -122,12 +122,12 @@ static const Line LINES[] = {
     {"roulette", "below a half", rouletteAtHalf},
     {"roulette", "below an eighth", rouletteAtEighth},
     {"roulette", "below a 64th", rouletteAt64th},
-    {"landings", "one", asItIs},
-    {"landings", "none", noLanding},
-    {"landings", "two", twoLandings},
-    {"landings", "four", fourLandings},
-    {"landings", "eight", eightLandings},
-    {"landings", "sixteen", mostLandings},
+    {"vertices", "one", asItIs},
+    {"vertices", "none", noVertex},
+    {"vertices", "two", twoVertices},
+    {"vertices", "four", fourVertices},
+    {"vertices", "eight", eightVertices},
+    {"vertices", "sixteen", mostVertices},
     {"lamps", "all, triangles by power", eachEmitter},
     {"lamps", "by power", byPower},
     {"lamps", "from a tree", tree},

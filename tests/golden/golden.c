@@ -180,7 +180,7 @@ static void paths(vplRenderOptions* o)
 static void lightPaths(vplRenderOptions* o)
 {
     paths(o);
-    o->path.landings = 16;
+    o->path.lightVertices = 16;
 }
 
 static void secondBounce(vplRenderOptions* o)

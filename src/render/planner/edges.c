@@ -68,7 +68,7 @@ static vplResult openEdges(const vplRun* run, const vplImage* picture, int most,
     e->places = vplArena_Alloc(e->arena, (size_t)picture->width * (size_t)picture->height, sizeof *e->places);
     TRY(vplArena_Check(e->arena));
     choosePixels(e, picture, bin);
-    TRY(vplFindLandings(run));
+    TRY(vplFindLightVertices(run));
     vplPathDef def = vplDescribePaths(run, VPL_SHOW_PICTURE);
     def.seed ^= SEED;
     return vplSparsePaths_Init(&e->paths, run->results[VPL_STAGE_GEOMETRY], &def, e->pixels, count);

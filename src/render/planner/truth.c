@@ -94,7 +94,7 @@ static vplResult openTruth(const vplRun* run, int count, vplTruth* t)
     t->pixels = vplArena_AllocZero(t->arena, (size_t)count, sizeof *t->pixels);
     t->weights = vplArena_AllocZero(t->arena, (size_t)count, sizeof *t->weights);
     TRY(vplArena_Check(t->arena));
-    TRY(vplFindLandings(run));
+    TRY(vplFindLightVertices(run));
     vplPathDef def = vplDescribePaths(run, run->plan->options.output.show);
     def.seed ^= SEED;
     def.lastBounce = def.mostBounces = VPL_MAX_BOUNCES;

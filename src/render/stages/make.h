@@ -81,11 +81,11 @@ int vplCountPathPasses(const vplPlan* plan);
 // What the path tracer traces for a picture. The result of VPL_STAGE_LIGHT_PATHS counts where there is one.
 vplPathDef vplDescribePaths(const vplRun* run, vplShow show);
 
-// Decides how often light paths land, where the options leave it open: runs VPL_STAGE_LIGHT_PATHS, which the plan need not have.
-vplResult vplFindLandings(const vplRun* run);
+// Decides how many vertices light paths have, where the options leave it open: runs VPL_STAGE_LIGHT_PATHS, which the plan need not have.
+vplResult vplFindLightVertices(const vplRun* run);
 
-// As often as was decided; once if nothing was.
-int vplCountLandings(const vplRun* run);
+// As many as was decided; one if nothing was.
+int vplCountLightVertices(const vplRun* run);
 
 // The mean of all paths so far.
 vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);

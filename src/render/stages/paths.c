@@ -26,13 +26,13 @@ typedef struct Paths {
     vplPathTracer* direct; // the same paths up to their first hit; NULL: no layer needs it
 } Paths;
 
-_Static_assert(VPL_MAX_LANDINGS == (int)VPL_MOST_LANDINGS, "the option allows what a path holds");
+_Static_assert(VPL_MAX_LIGHT_VERTICES == (int)VPL_MOST_LIGHT_VERTICES, "the option allows what a path holds");
 
-int vplCountLandings(const vplRun* run)
+int vplCountLightVertices(const vplRun* run)
 {
-    const int given = run->plan->options.path.landings;
+    const int given = run->plan->options.path.lightVertices;
     const double* further = run->results[VPL_STAGE_LIGHT_PATHS];
-    return given >= 0 ? given : further != NULL && *further > VPL_FURTHER_SHARE ? VPL_MAX_LANDINGS : 1;
+    return given >= 0 ? given : further != NULL && *further > VPL_FURTHER_SHARE ? VPL_MAX_LIGHT_VERTICES : 1;
 }
 
 vplPathDef vplDescribePaths(const vplRun* run, vplShow show)
@@ -48,7 +48,7 @@ vplPathDef vplDescribePaths(const vplRun* run, vplShow show)
     def.seed = o->seed;
     def.emission = show == VPL_SHOW_PICTURE || show == VPL_SHOW_DIRECT;
     def.pixelCentres = o->path.pixel == VPL_PIXEL_CENTRE;
-    def.landings = vplCountLandings(run);
+    def.lightVertices = vplCountLightVertices(run);
     def.lastBounce = def.mostBounces = o->maxBounces >= 0 ? o->maxBounces : VPL_MAX_BOUNCES;
     if (show == VPL_SHOW_DIRECT) {
         def.lastBounce = 0;
@@ -71,15 +71,15 @@ vplResult vplMakeLightPaths(const vplRun* run, void** resultOut)
     vplLog(
         run->context, VPL_LOG_INFO,
         "%.0f %% of reflected light is found where light paths have been reflected: light paths of up to %d "
-        "landings take the %s time for the same error",
-        100 * *further, VPL_MAX_LANDINGS, *further > VPL_FURTHER_SHARE ? "shorter" : "longer");
+        "vertices take the %s time for the same error",
+        100 * *further, VPL_MAX_LIGHT_VERTICES, *further > VPL_FURTHER_SHARE ? "shorter" : "longer");
     return VPL_SUCCESS;
 }
 
-vplResult vplFindLandings(const vplRun* run)
+vplResult vplFindLightVertices(const vplRun* run)
 {
-    return run->plan->options.path.landings < 0 ? vplRunner_RunStage(run->runner, VPL_STAGE_LIGHT_PATHS)
-                                                : VPL_SUCCESS;
+    return run->plan->options.path.lightVertices < 0 ? vplRunner_RunStage(run->runner, VPL_STAGE_LIGHT_PATHS)
+                                                     : VPL_SUCCESS;
 }
 
 static vplResult createPaths(const vplRun* run, Paths* paths)
