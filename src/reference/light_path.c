@@ -147,6 +147,9 @@ vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, co
 
 // ---- how much light is found at later vertices of light paths
 
+// Light that is reflected more often hardly counts, and takes long where surfaces absorb hardly any.
+enum { PILOT_BOUNCES = 32 };
+
 enum { PILOT_CHUNKS = 32, PILOT_SEED = 0x70696c6f74 };
 
 typedef struct Pilot {
@@ -182,7 +185,8 @@ vplResult vplMeasureFurther(const vplGeometry* geometry, const vplPathDef* def, 
     reflected.emission = false;
     reflected.lightVertices = VPL_MOST_LIGHT_VERTICES;
     reflected.firstBounce = 1;
-    reflected.lastBounce = def->mostBounces;
+    reflected.lastBounce = def->mostBounces < PILOT_BOUNCES ? def->mostBounces : PILOT_BOUNCES;
+    reflected.mostBounces = reflected.lastBounce;
     TRY(vplPathScene_Init(&pilot.scene, geometry, &reflected));
     const vplResult result = vplParallelForAsking(geometry->context, PILOT_CHUNKS, followPilots, &pilot);
     double all = 0, further = 0;
