@@ -196,7 +196,7 @@ TEST(PlansFollowLightAsFarAsTheSceneRequires, 2)
         int vertices;
         const char* why;
     } ROWS[] = {{HARD_ROOM, "", VPL_MAX_LIGHT_VERTICES,
-                 "of reflected light is found where light paths have been reflected"},
+                 "of reflected light is found at later vertices of light paths"},
                 {HARD_ROOM, "--seed 77", VPL_MAX_LIGHT_VERTICES, "of reflected light is found"},
                 {HARD_ROOM, "--light-vertices 3", 3, NULL},
                 {HARD_ROOM, "--spp 1", 1, "there are few paths"},

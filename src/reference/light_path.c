@@ -14,7 +14,7 @@
 enum { VERTEX_SETS = 1 << 30, CHOICE_SETS = VERTEX_SETS + VPL_MOST_LIGHT_VERTICES };
 
 // The first vertex. Returns false if the light path ends before it, or reflects nothing.
-static bool begin(vplPathState* path, double choice, const float u[4], vplLightPath* p)
+static bool makeFirst(vplPathState* path, double choice, const float u[4], vplLightPath* p)
 {
     const vplPathScene* s = path->scene;
     vplParticle start;
@@ -39,8 +39,8 @@ static bool begin(vplPathState* path, double choice, const float u[4], vplLightP
 }
 
 // The next vertex. Russian roulette ends paths whose vertices reflect little light.
-static bool reflect(vplPathState* path, const vplLightVertex* from, uint32_t set, vplRgb* reflected,
-                    vplLightVertex* to)
+static bool makeNext(vplPathState* path, const vplLightVertex* from, uint32_t set, vplRgb* reflected,
+                     vplLightVertex* to)
 {
     const vplPathScene* s = path->scene;
     float u[4];
@@ -72,11 +72,11 @@ static bool reflect(vplPathState* path, const vplLightVertex* from, uint32_t set
 void vplLightPath_Follow(vplPathState* path, double choice, const float u[4], vplLightPath* p)
 {
     const vplPathScene* s = path->scene;
-    p->count = begin(path, choice, u, p) ? 1 : 0;
+    p->count = makeFirst(path, choice, u, p) ? 1 : 0;
     vplRgb reflected = p->count > 0 ? p->vertices[0].at.rho : (vplRgb){0, 0, 0};
     while (p->count > 0 && p->count < s->lightVertices &&
-           reflect(path, &p->vertices[p->count - 1], (uint32_t)(VERTEX_SETS + p->count), &reflected,
-                   &p->vertices[p->count])) {
+           makeNext(path, &p->vertices[p->count - 1], (uint32_t)(VERTEX_SETS + p->count), &reflected,
+                    &p->vertices[p->count])) {
         p->count++;
     }
 }
@@ -88,7 +88,7 @@ typedef struct Offer {
     int vertex;                     // -1: none
 } Offer;
 
-static Offer connect(const vplPathState* path, const vplPathVertex* v, const vplLightPath* p, int i)
+static Offer offerOf(const vplPathState* path, const vplPathVertex* v, const vplLightPath* p, int i)
 {
     const vplPathScene* s = path->scene;
     const vplLightVertex* l = &p->vertices[i];
@@ -123,7 +123,7 @@ vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, co
     Offer chosen = {.vertex = -1};
     double choice = (double)u[0], total = 0;
     for (int i = 0; i < p->count && bounce + 1 + i <= s->def.mostBounces; i++) {
-        const Offer o = connect(path, v, p, i);
+        const Offer o = offerOf(path, v, p, i);
         if (!(o.power > 0)) {
             continue;
         }

@@ -400,8 +400,7 @@ static vplResult decideLightVertices(vplRunner* r, vplPlan* p)
     }
     TRY(vplFindLightVertices(&r->run));
     p->options.path.lightVertices = vplCountLightVertices(&r->run);
-    vplDecide(p, "light-vertices",
-              "%.0f %% of reflected light is found where light paths have been reflected",
+    vplDecide(p, "light-vertices", "%.0f %% of reflected light is found at later vertices of light paths",
               100 * *(const double*)r->run.results[VPL_STAGE_LIGHT_PATHS]);
     return VPL_SUCCESS;
 }

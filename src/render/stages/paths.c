@@ -68,11 +68,9 @@ vplResult vplMakeLightPaths(const vplRun* run, void** resultOut)
     *resultOut = further;
     const vplPathDef def = vplDescribePaths(run, VPL_SHOW_PICTURE);
     TRY(vplMeasureFurther(run->results[VPL_STAGE_GEOMETRY], &def, further));
-    vplLog(
-        run->context, VPL_LOG_INFO,
-        "%.0f %% of reflected light is found where light paths have been reflected: light paths of up to %d "
-        "vertices take the %s time for the same error",
-        100 * *further, VPL_MAX_LIGHT_VERTICES, *further > VPL_FURTHER_SHARE ? "shorter" : "longer");
+    vplLog(run->context, VPL_LOG_INFO,
+           "%.0f %% of reflected light is found at later vertices of light paths: these have up to %d",
+           100 * *further, *further > VPL_FURTHER_SHARE ? VPL_MAX_LIGHT_VERTICES : 1);
     return VPL_SUCCESS;
 }
 
