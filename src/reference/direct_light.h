@@ -30,7 +30,7 @@ typedef struct vplConnection {
     // Densities with which BSDF sampling finds the point, and with which a light path begins there and goes to the vertex, over
     // that of choosing the point.
     double bsdfRatio, particleRatio;
-    double edges;                   // of the vertex, of all techniques
+    double edges;                   // of the vertex
     double distance, cosineAtLight; // distance 0: they cannot see each other
 } vplConnection;
 

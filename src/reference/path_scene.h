@@ -114,8 +114,8 @@ typedef struct vplPathState {
     int64_t rays;    // cast so far
     // Radiance found at vertices of light paths after the first, mean over red, green and blue, of the bounces that count.
     double further;
-    // [n]: the sum of the weights of connecting at one of the last n edges instead, to a light path of n vertices, over that of going
-    // on to its light.
+    // [n]: the weights of all techniques that connect the ends of one of the last n edges, instead of going along it, over the weight of
+    // light sampling at the last vertex; 0 for n = 0.
     double edges[VPL_MOST_LIGHT_VERTICES + 1];
 } vplPathState;
 
@@ -141,7 +141,7 @@ typedef struct vplPathVertex {
     vplVec3 normal;  // of the surface, on the side that the path came from
     vplVec3 shading; // normal to shade with, on the same side
     vplRgb rho;
-    double edges; // the path's, for light paths of all their vertices
+    double edges; // as of vplPathState, for the longest light paths
 } vplPathVertex;
 
 // `width`: diameter, metres, of the cone around the ray in `direction`, of any length.
