@@ -143,6 +143,18 @@ vplImage* renderShown(const vplScene* scene, vplShow show, int bounce)
     return renderScene(scene, &options, NULL);
 }
 
+vplScene* addAllLights(vplScene* scene, int n)
+{
+    addRoom(scene, addGrey(scene, 0.6f, 0));
+    addQuad(scene, addGrey(scene, 0.3f, 4), (vplVec3){0.3f, 0.6f, 0}, 1, 0.5f);
+    addSphere(scene, addGrey(scene, 0.8f, 0), (vplVec3){-0.4f, -0.5f, 0}, 0.4f, n, true);
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0.5f, -0.5f, 0.3f}, 0.4f);
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){-0.5f, 0.5f, -0.3f}, 0.2f);
+    addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){-0.5f, 0.8f, 0.3f}, 2);
+    addCamera(scene, (vplVec3){0, 0, 0.9f}, (vplVec3){0, -0.1f, -1}, 1.4);
+    return scene;
+}
+
 double squaredDifference(const vplImage* a, const vplImage* b)
 {
     double squares = 0;

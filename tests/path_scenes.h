@@ -37,6 +37,9 @@ double radianceOf(const vplScene* scene, const vplRenderOptions* options, int ch
 #define ROOM      "examples/scenes/room.json"
 #define AREA_ROOM "examples/scenes/room-area.json"
 
+// Adds a room with every type of emitter that has a place, an area light and a smooth sphere as of addSphere, and a camera. Returns the scene.
+vplScene* addAllLights(vplScene* scene, int n);
+
 // The mean of the squared differences of all values; both are as large.
 double squaredDifference(const vplImage* a, const vplImage* b);
 

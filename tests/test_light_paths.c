@@ -8,27 +8,12 @@
 
 static const char HARD_ROOM[] = "tests/data/shade.json"; // a lamp in a box with a slit
 
-// A room in which every light, a sphere with interpolated normals and a box around a lamp take part.
-static vplScene* fullRoom(vplContext* context)
-{
-    vplScene* scene = newScene(context);
-    addRoom(scene, addGrey(scene, 0.6f, 0));
-    addQuad(scene, addGrey(scene, 0.3f, 4), (vplVec3){0.3f, 0.6f, 0}, 1, 0.5f);
-    addSphere(scene, addGrey(scene, 0.8f, 0), (vplVec3){-0.4f, -0.5f, 0}, 0.4f, 2, true);
-    addQuad(scene, addGrey(scene, 0.7f, 0), (vplVec3){0.5f, -0.2f, 0.3f}, 1, 0.8f);
-    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0.5f, -0.5f, 0.3f}, 0.4f);
-    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){-0.5f, 0.5f, -0.3f}, 0.2f);
-    addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){-0.5f, 0.8f, 0.3f}, 2);
-    addCamera(scene, (vplVec3){0, 0, 0.9f}, (vplVec3){0, -0.1f, -1}, 1.4);
-    return scene;
-}
-
 // Pictures, and their means, differ by no more than their error estimates allow. Spheres of few triangles have normals far from those of
 // their triangles, so that a light path that forgets this has another mean.
 TEST(LightPathsOfAnyLengthFindTheSameLight, 2, SLOW)
 {
     static const int VERTICES[] = {0, 2, 3, VPL_MOST_LIGHT_VERTICES};
-    vplScene* scene = fullRoom(context);
+    vplScene* scene = addAllLights(newScene(context), 2);
     vplGeometry* geometry;
     vplPathStats stats, other;
     assert_int_equal(vplGeometry_Create(scene, &geometry), VPL_SUCCESS);

@@ -80,15 +80,8 @@ TEST(ErrorEstimatePredictsTheDifferenceOfSeeds, 2, SLOW)
 // same light. Pictures, and their means, differ by no more than their error estimates allow.
 TEST(AllWaysOfFindingLightAgree, 2, SLOW)
 {
-    vplScene* scene = newScene(context);
+    vplScene* scene = addAllLights(newScene(context), 3);
     vplGeometry* geometry;
-    addRoom(scene, addGrey(scene, 0.6f, 0));
-    addQuad(scene, addGrey(scene, 0.3f, 4), (vplVec3){0.3f, 0.6f, 0}, 1, 0.5f);
-    addSphere(scene, addGrey(scene, 0.8f, 0), (vplVec3){-0.4f, -0.5f, 0}, 0.4f, 3, true);
-    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0.5f, -0.5f, 0.3f}, 0.4f);
-    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){-0.5f, 0.5f, -0.3f}, 0.2f);
-    addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){-0.5f, 0.8f, 0.3f}, 2);
-    addCamera(scene, (vplVec3){0, 0, 0.9f}, (vplVec3){0, -0.1f, -1}, 1.4);
     assert_int_equal(vplGeometry_Create(scene, &geometry), VPL_SUCCESS);
     vplPathDef def = vplDefaultPathDef();
     def.emission = false; // aliasing at visible emitters would dominate the error

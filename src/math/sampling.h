@@ -5,7 +5,27 @@
 
 #include <vpl/vecmath.h>
 
+#include <stdbool.h>
 #include <stdint.h>
+
+// Weighted reservoir sampling: of all offers one is kept, with a probability proportional to its weight.
+typedef struct vplReservoir {
+    double choice; // a random number in [0, 1), rescaled by every offer
+    double total;  // of all weights; 0 at first
+} vplReservoir;
+
+// Returns true if an offer of this positive weight replaces the one that is kept.
+static inline bool vplReservoir_Takes(vplReservoir* r, double weight)
+{
+    r->total += weight;
+    const double share = weight / r->total;
+    if (r->choice < share) {
+        r->choice /= share;
+        return true;
+    }
+    r->choice = (r->choice - share) / (1 - share);
+    return false;
+}
 
 // Reverses the order of the bits.
 static inline uint32_t vplReverseBits(uint32_t x)

@@ -6,6 +6,7 @@
 #include "reference/direct_light.h"
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
+#include "math/sampling.h"
 #include "math/vec.h"
 
 #include <float.h>
@@ -245,47 +246,42 @@ connectToEmitter(const vplPathScene* s, const vplPathVertex* v, int emitter, dou
     return c;
 }
 
-// Emitters that were offered, of which one is chosen with a probability proportional to its unoccluded light: weighted
-// reservoir sampling by one number that is rescaled at every step.
-typedef struct Reservoir {
-    double choice, total, power; // of all, and of the chosen one
+// Emitters that were offered, of which one is chosen with a probability proportional to its unoccluded light.
+typedef struct Offers {
+    vplReservoir reservoir;
     vplConnection chosen;
-    int emitter;
-} Reservoir;
+    double power; // of the chosen one
+    int emitter;  // the chosen one; -1: none
+} Offers;
 
 // Always inlined, so that the reservoir stays in registers: saves 1.2 % of the instructions in scenes with few emitters.
 static inline __attribute__((always_inline)) void offer(const vplPathScene* s, const vplPathVertex* v,
-                                                        int emitter, double probability, Reservoir* r)
+                                                        int emitter, double probability, Offers* o)
 {
     const vplConnection c = connectToEmitter(s, v, emitter, probability);
     double power = c.value.r + c.value.g + c.value.b;
     if (power <= 0) {
         return;
     }
-    r->total += power;
-    double share = power / r->total;
-    if (r->choice < share) {
-        r->choice /= share;
-        r->chosen = c;
-        r->power = power;
-        r->emitter = emitter;
-    } else {
-        r->choice = (r->choice - share) / (1 - share);
+    if (vplReservoir_Takes(&o->reservoir, power)) {
+        o->chosen = c;
+        o->power = power;
+        o->emitter = emitter;
     }
 }
 
 // Offers directional emitters, and points and spots that the tree chooses by numbers spread evenly from `choice` on.
 static __attribute__((noinline)) void offerFromTree(const vplPathScene* s, const vplPathVertex* v,
-                                                    double choice, Reservoir* r)
+                                                    double choice, Offers* o)
 {
     for (int i = 0; i < s->trees->directionalCount; i++) {
-        offer(s, v, s->trees->directional[i], 1, r);
+        offer(s, v, s->trees->directional[i], 1, o);
     }
     for (int i = 0; i < TREE_OFFERS; i++) {
         const vplChosenSource c = vplEmitterTree_Choose(s->trees->emitters, v->hit.position, v->shading,
                                                         (i + choice) / TREE_OFFERS);
         if (c.source >= 0) {
-            offer(s, v, s->emission->sources[c.source].emitter, TREE_OFFERS * c.probability, r);
+            offer(s, v, s->emission->sources[c.source].emitter, TREE_OFFERS * c.probability, o);
         }
     }
 }
@@ -294,16 +290,17 @@ static __attribute__((noinline)) void offerFromTree(const vplPathScene* s, const
 static void addEmitter(vplPathState* path, const vplPathVertex* v, const float u[4], vplRadiance* sum)
 {
     const vplPathScene* s = path->scene;
-    Reservoir r = {.choice = (double)u[s->trees->emitters != NULL ? 1 : 0], .power = 1, .emitter = -1};
+    Offers o = {
+        .reservoir = {.choice = (double)u[s->trees->emitters != NULL ? 1 : 0]}, .power = 1, .emitter = -1};
     if (s->trees->emitters != NULL) {
-        offerFromTree(s, v, refine(u[0], u[3]), &r);
+        offerFromTree(s, v, refine(u[0], u[3]), &o);
     } else {
         for (int i = 0; i < s->emission->emitterCount; i++) {
-            offer(s, v, i, 1, &r);
+            offer(s, v, i, 1, &o);
         }
     }
-    if (r.emitter >= 0 && isEmitterVisible(path, v, &s->emission->emitters[r.emitter], &r.chosen)) {
-        vplRadiance_Add(sum, vplRadiance_Scale(r.total / r.power, r.chosen.value));
+    if (o.emitter >= 0 && isEmitterVisible(path, v, &s->emission->emitters[o.emitter], &o.chosen)) {
+        vplRadiance_Add(sum, vplRadiance_Scale(o.reservoir.total / o.power, o.chosen.value));
     }
 }
 

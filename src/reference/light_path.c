@@ -2,15 +2,15 @@
 // Based on: Eric P. Lafortune and Yves D. Willems, Bi-directional Path Tracing, Compugraphics 1993; Eric Veach, Robust Monte Carlo
 // Methods for Light Transport Simulation, 1997, chapter 10 (bidirectional path tracing) and section 5.3 (shading normals). Connections to light
 // paths find bright places that paths from the camera hardly find: the ceiling above a point light, or all that is lit through a gap.
-// On diffuse surfaces going along an edge has the same density in both directions, so that the weight of connecting the ends of an edge, relative to other
-// edges of the same path, is one over the density of going along it.
+// Between diffuse surfaces a reflection along an edge has the same density in both directions. So, of the techniques that find the same path, the
+// one that connects the ends of an edge has a density that is proportional to one over the density of the reflection along this edge.
 #include "reference/light_path.h"
 #include "base/context.h"
 #include "geometry/emission.h"
 #include "math/sampling.h"
 #include "math/vec.h"
 
-// Sets of random numbers besides those of the path from the camera.
+// First indices of the sets of random numbers that light paths draw; paths from the camera use lower ones.
 enum { VERTEX_SETS = 1 << 30, CHOICE_SETS = VERTEX_SETS + VPL_MOST_LIGHT_VERTICES };
 
 // The first vertex. Returns false if the light path ends before it, or reflects nothing.
@@ -46,8 +46,7 @@ static bool makeNext(vplPathState* path, const vplLightVertex* from, uint32_t se
     float u[4];
     vplHit hit;
     vplPath_Draw(path, set, u);
-    const float most = fmaxf(reflected->r, fmaxf(reflected->g, reflected->b));
-    const float chance = fminf(1, most / (float)s->def.rouletteFrom);
+    const float chance = vplPathScene_Survival(s, *reflected);
     if (u[2] >= chance) {
         return false;
     }
@@ -60,7 +59,7 @@ static bool makeNext(vplPathState* path, const vplLightVertex* from, uint32_t se
     to->at = vplPathVertex_Make(s, &hit, direction, VPL_BOUNCE_SPREAD * hit.t);
     const double left = vplDot(direction, from->at.normal), flat = -vplDot(direction, to->at.normal),
                  cosine = -vplDot(direction, to->at.shading);
-    const double density = cosine * left / (VPL_PI * hit.t * hit.t); // of the reverse
+    const double density = vplDensityOfReflection(cosine, left, hit.t); // from here to the vertex before
     const vplRgb kept = vplRgbScale(1 / chance, to->at.rho);
     *reflected = vplRgbMul(*reflected, kept);
     to->carried = vplRgbMul(from->carried, kept);
@@ -81,11 +80,12 @@ void vplLightPath_Follow(vplPathState* path, double choice, const float u[4], vp
     }
 }
 
-// What a connection to a vertex of the light path adds without occlusion.
+// A connection to a vertex of the light path.
 typedef struct Offer {
-    vplRadiance light;
-    double power, distance, cosine; // cosine: at this vertex
-    int vertex;                     // -1: none
+    vplRadiance light;       // that it adds if nothing is in between
+    double power;            // the sum of its red, green and blue
+    double distance, cosine; // cosine: at the light path's vertex
+    int vertex;              // -1: none
 } Offer;
 
 static Offer offerOf(const vplPathState* path, const vplPathVertex* v, const vplLightPath* p, int i)
@@ -100,7 +100,7 @@ static Offer offerOf(const vplPathState* path, const vplPathVertex* v, const vpl
     if (!(cosine > 0 && flat > 0 && o.cosine > 0)) {
         return o;
     }
-    const double density = cosine * o.cosine / (VPL_PI * o.distance * o.distance);
+    const double density = vplDensityOfReflection(cosine, o.cosine, o.distance);
     const double edges = l->edges + vplHeuristic(s, l->ratio / density) +
                          vplHeuristic(s, l->ratio * flat / cosine) * path->edges[s->lightVertices - 1 - i];
     const double mine = p->light.particleRatio * l->ratio / density;
@@ -121,24 +121,19 @@ vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, co
         vplPath_Draw(path, (uint32_t)(CHOICE_SETS + bounce), u);
     }
     Offer chosen = {.vertex = -1};
-    double choice = (double)u[0], total = 0;
+    vplReservoir reservoir = {.choice = (double)u[0]};
     for (int i = 0; i < p->count && bounce + 1 + i <= s->def.mostBounces; i++) {
         const Offer o = offerOf(path, v, p, i);
-        if (!(o.power > 0)) {
-            continue;
+        if (o.power > 0 && vplReservoir_Takes(&reservoir, o.power)) {
+            chosen = o;
         }
-        total += o.power;
-        const double share = o.power / total;
-        const bool takes = choice < share;
-        choice = takes ? choice / share : (choice - share) / (1 - share);
-        chosen = takes ? o : chosen;
     }
     const int i = chosen.vertex;
     if (i < 0 || bounce + 1 + i < s->def.firstBounce || bounce + 1 + i > s->def.lastBounce ||
         !vplPathVertex_Sees(path, v, p->vertices[i].at.hit.position, chosen.distance, chosen.cosine)) {
         return none;
     }
-    const vplRadiance light = vplRadiance_Scale(total / chosen.power, chosen.light);
+    const vplRadiance light = vplRadiance_Scale(reservoir.total / chosen.power, chosen.light);
     if (i > 0) {
         path->further += (light.r * throughput.r + light.g * throughput.g + light.b * throughput.b) / 3;
     }

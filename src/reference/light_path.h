@@ -26,20 +26,19 @@ typedef struct vplLightPath {
 // Follows a path from a light that `choice` selects, in a direction that u selects.
 void vplLightPath_Follow(vplPathState* path, double choice, const float u[4], vplLightPath* out);
 
-// Radiance that comes from the light path and is reflected at the vertex, after `bounce` bounces from the camera and with `throughput` on
-// the way to it. The vertex connects to one vertex of the light path, which is chosen by what each would add without occlusion.
+// Returns the radiance that a vertex of a path from the camera reflects from the light path. It is connected to one vertex of the light path,
+// which is chosen with a probability proportional to its unoccluded radiance. `bounce` counts the bounces before the vertex, `throughput` is
+// that of the path up to it.
 vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* vertex, const vplLightPath* light,
                                   int bounce, vplRgb throughput);
 
-// Where paths find more than this share of reflected light at vertices of light paths after the first, light paths of VPL_MOST_LIGHT_VERTICES have the
-// smaller error in the same time, else those of one vertex. Share, and squared error times time over that with one vertex: corridor 0.77, 0.18; shade
-// 0.66, 0.05; hall 0.38, 0.82; door-ajar 0.29, 1.1; cornell-area 0.20, 1.4; boxes 0.16, 1.4.
+// If paths find more than this share of reflected light at vertices of light paths after the first, light paths of VPL_MOST_LIGHT_VERTICES have
+// the smaller error in the same time; otherwise those of one vertex have it, or nearly. Share, and squared error times time over that with one vertex:
+// corridor 0.67, 0.18; shade 0.60, 0.05; hall 0.38, 0.82; thin-boxes 0.32, 0.97; loft 0.31, 1.36; cornell-area 0.23, 1.43; flat 0.23, 0.91.
 #define VPL_FURTHER_SHARE (1.0 / 3)
 
-// Measures this share by paths through pixels all over the picture of the def, whose seed does not matter: they are the same for every seed.
-vplResult vplMeasureFurther(const vplGeometry* geometry, const vplPathDef* def, double* shareOut);
-
-// Paths that vplMeasureFurther traces.
+// Measures this share by VPL_PILOT_PATHS paths through pixels all over the picture of the def. The paths do not depend on the def's seed.
 enum { VPL_PILOT_PATHS = 512 };
+vplResult vplMeasureFurther(const vplGeometry* geometry, const vplPathDef* def, double* shareOut);
 
 #endif

@@ -21,8 +21,7 @@ static void add(vplRadiance* sum, vplRgb throughput, vplRadiance light)
 // Russian roulette: false ends the path; surviving paths carry the light of those that end.
 static bool survives(const vplPathState* path, uint32_t set, vplRgb* throughput)
 {
-    float most = fmaxf(throughput->r, fmaxf(throughput->g, throughput->b));
-    float chance = most / (float)path->scene->def.rouletteFrom;
+    const float chance = vplPathScene_Survival(path->scene, *throughput);
     if (chance >= 1) {
         return true;
     }
@@ -35,15 +34,15 @@ static bool survives(const vplPathState* path, uint32_t set, vplRgb* throughput)
     return true;
 }
 
-// The next vertex. Going there had a density per square metre, which is the weight of connecting the two instead. A light path that comes to
-// the vertex before leaves it with the cosine of its normal, and not of the shading normal.
+// Makes the next vertex, and adds the edge to it to the path's. Light paths leave `from` by the cosine of its normal, where paths from the
+// camera leave it by that of the shading normal: this changes their densities on all earlier edges.
 static vplPathVertex arrive(vplPathState* path, const vplPathVertex* from, const vplHit* hit,
                             vplVec3 direction)
 {
     const vplPathScene* s = path->scene;
     vplPathVertex v = vplPathVertex_Make(s, hit, direction, VPL_BOUNCE_SPREAD * hit->t);
     const double flat = vplDot(direction, from->normal), cosine = vplDot(direction, from->shading);
-    const double density = cosine * -(double)vplDot(direction, v.normal) / (VPL_PI * hit->t * hit->t);
+    const double density = vplDensityOfReflection(cosine, -vplDot(direction, v.normal), hit->t);
     const double ratio = cosine > 0 ? vplHeuristic(s, flat / cosine) : 0, edge = vplHeuristic(s, 1 / density);
     for (int n = s->lightVertices; n > 0; n--) {
         path->edges[n] = fmin(ratio * path->edges[n - 1] + edge, DBL_MAX);

@@ -23,8 +23,8 @@ enum {
 // their bits.
 enum { VPL_PATH_EMITTERS_OF_TREE = 64, VPL_PATH_TRIANGLES_OF_TREE = 32 };
 
-// More than 8 vertices gain little: squared error times time is 0.08 and 0.05 of that of one vertex with 8 and 16 in shade, 0.19 and
-// 0.18 in corridor, 0.81 and 0.81 in hall.
+// The most vertices of a path from a light. More would gain little: squared error times time over that with one vertex is 0.08 with 8 and
+// 0.05 with 16 vertices in shade, 0.19 and 0.18 in corridor, 0.81 and 0.82 in hall.
 enum { VPL_MOST_LIGHT_VERTICES = 16 };
 
 typedef struct vplPathDef {
@@ -38,11 +38,11 @@ typedef struct vplPathDef {
     // The picture sums light of this range of bounces, counted before the one towards the camera; default 0,
     // 1 << 16.
     int firstBounce, lastBounce;
-    int mostBounces; // that light may have, whether they count or not; at least lastBounce; default 1 << 16
+    int mostBounces; // after which paths end, also where lastBounce is lower; default 1 << 16
     uint64_t seed;
     // VPL_PATH_..., default VPL_PATH_ALL. Lights that a path cannot hit are sampled in any case.
     int techniques;
-    // Vertices of a light path at most, to which paths connect: 0 to VPL_MOST_LIGHT_VERTICES; default 1.
+    // The most vertices of a path from a light, to which paths from the camera connect: [0, VPL_MOST_LIGHT_VERTICES]; default 1.
     int lightVertices;
     bool balanceHeuristic; // weight by the balance heuristic instead of the power heuristic; default false
     bool random;           // independent random numbers instead of Sobol's points; default false
@@ -64,7 +64,7 @@ typedef struct vplPathScene {
     vplPathDef def;            // without the camera and the emitters, which need not outlive it
     vplCameraDef camera;
     vplSobol sobol;
-    int lightVertices;           // of light paths; 0 without them
+    int lightVertices;           // the most of a light path; 0: there are no light paths
     float pixelWidth;            // at a depth of one metre, metres
     vplVec3 right, up, forward;  // of the camera
     double scaleX, scaleY;       // tangents of its half-angles
@@ -112,7 +112,7 @@ typedef struct vplPathState {
     uint64_t stream; // of its numbers: one for each half of a pixel's samples
     uint32_t index;  // of the path in the stream
     int64_t rays;    // cast so far
-    // Radiance found at vertices of light paths after the first, mean over red, green and blue, of the bounces that count.
+    // The part of the path's radiance that was found at vertices of light paths after the first, mean over red, green and blue.
     double further;
     // [n]: the weights of all techniques that connect the ends of one of the last n edges, instead of going along it, over the weight of
     // light sampling at the last vertex; 0 for n = 0.
@@ -133,6 +133,19 @@ vplRay vplPathScene_CameraRay(const vplPathScene* scene, int x, int y, const flo
 static inline double vplHeuristic(const vplPathScene* s, double ratio)
 {
     return s->def.balanceHeuristic ? ratio : ratio * ratio;
+}
+
+// The probability with which Russian roulette lets a path of this throughput go on.
+static inline float vplPathScene_Survival(const vplPathScene* s, vplRgb throughput)
+{
+    const float most = fmaxf(throughput.r, fmaxf(throughput.g, throughput.b));
+    return fminf(1, most / (float)s->def.rouletteFrom);
+}
+
+// The density, per square metre, with which a diffuse reflection reaches a point at `distance` metres, from the cosines at both ends.
+static inline double vplDensityOfReflection(double cosineFrom, double cosineTo, double distance)
+{
+    return cosineFrom * cosineTo / (VPL_PI * distance * distance);
 }
 
 // A point where a path is reflected.

@@ -387,24 +387,6 @@ static void decideGbuffer(const vplRunner* r, vplPlan* p)
                       vplTrianglesPerPixel(r, o) > SHARED_TRIANGLES_PER_PIXEL;
 }
 
-static vplResult decideLightVertices(vplRunner* r, vplPlan* p)
-{
-    char why[VPL_PLAN_TEXT];
-    if (p->options.path.lightVertices >= 0) {
-        return VPL_SUCCESS;
-    }
-    if (!VPL_STAGES[VPL_STAGE_LIGHT_PATHS].isNeeded(p, why)) {
-        p->options.path.lightVertices = 1;
-        vplDecide(p, "light-vertices", "%s", why);
-        return VPL_SUCCESS;
-    }
-    TRY(vplFindLightVertices(&r->run));
-    p->options.path.lightVertices = vplCountLightVertices(&r->run);
-    vplDecide(p, "light-vertices", "%.0f %% of reflected light is found at later vertices of light paths",
-              100 * *(const double*)r->run.results[VPL_STAGE_LIGHT_PATHS]);
-    return VPL_SUCCESS;
-}
-
 vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
 {
     decideGbuffer(r, p);
@@ -416,7 +398,7 @@ vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
     }
     decideClamp(r, p);
     if (p->options.method == VPL_METHOD_PATH) {
-        TRY(decideLightVertices(r, p));
+        TRY(vplDecideLightVertices(r, p));
     }
     if (p->options.method == VPL_METHOD_RADIOSITY) {
         TRY(vplDecidePatches(r, p));

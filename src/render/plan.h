@@ -76,6 +76,9 @@ void vplDecidePipeline(vplPlan* plan);
 // Resolves the number of bounces of SSVP, and counts their lights.
 void vplDecideBounces(const vplRunner* runner, vplPlan* plan);
 
+// Path tracing: decides how many vertices light paths have. May trace a few hundred paths.
+vplResult vplDecideLightVertices(vplRunner* runner, vplPlan* plan);
+
 // For a reader of the plan: makes the clusters of SSVP, so that their number is known.
 vplResult vplForetellClusters(vplRunner* r, const vplPlan* p);
 

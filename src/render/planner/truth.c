@@ -56,7 +56,7 @@ static Shares sharesOf(const vplImage* image)
                 : (Shares){1 / (6 * pixels), 1 / (6 * bright), 1 / (3 * linear), 1 / (3 * square)};
 }
 
-// The probability that a pixel is among the `wanted` ones, which may be all.
+// The probability of choosing a pixel where `wanted` pixels of the picture are chosen.
 static double expectedOf(const vplImage* image, const Shares* s, int x, int y, int wanted)
 {
     const double contrast = vplContrastOfPixel(image, x, y);

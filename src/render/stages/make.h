@@ -78,13 +78,13 @@ int vplPathsOfPass(const vplPlan* plan);
 // Passes of a path-traced picture whose number of paths is given.
 int vplCountPathPasses(const vplPlan* plan);
 
-// What the path tracer traces for a picture. The result of VPL_STAGE_LIGHT_PATHS counts where there is one.
+// The settings of the path tracer for a picture.
 vplPathDef vplDescribePaths(const vplRun* run, vplShow show);
 
-// Decides how many vertices light paths have, where the options leave it open: runs VPL_STAGE_LIGHT_PATHS, which the plan need not have.
+// Runs VPL_STAGE_LIGHT_PATHS, also where the plan has no such stage, if the options leave the number of light vertices open.
 vplResult vplFindLightVertices(const vplRun* run);
 
-// As many as was decided; one if nothing was.
+// The most vertices of a light path: as the options say, or as the result of VPL_STAGE_LIGHT_PATHS decides; 1 without either.
 int vplCountLightVertices(const vplRun* run);
 
 // The mean of all paths so far.

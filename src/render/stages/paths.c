@@ -68,9 +68,8 @@ vplResult vplMakeLightPaths(const vplRun* run, void** resultOut)
     *resultOut = further;
     const vplPathDef def = vplDescribePaths(run, VPL_SHOW_PICTURE);
     TRY(vplMeasureFurther(run->results[VPL_STAGE_GEOMETRY], &def, further));
-    vplLog(run->context, VPL_LOG_INFO,
-           "%.0f %% of reflected light is found at later vertices of light paths: these have up to %d",
-           100 * *further, *further > VPL_FURTHER_SHARE ? VPL_MAX_LIGHT_VERTICES : 1);
+    vplLog(run->context, VPL_LOG_INFO, "%.0f %% of reflected light is found at later vertices of light paths",
+           100 * *further);
     return VPL_SUCCESS;
 }
 
