@@ -134,24 +134,39 @@ static double countPaths(const vplTruth* truth)
     return (double)vplTruth_CountPixels(truth) * vplTruth_Paths(truth);
 }
 
+// A truth of more pixels with at least `paths` paths in all.
+static vplResult createWiderTruth(const vplRenderer* r, const vplImage* image, double paths,
+                                  vplTruth** widerOut)
+{
+    const vplRun* run = &r->runner.run;
+    vplTruth* wider;
+    TRY(vplTruth_Create(run, image, vplCountWiderTruth(r), &wider));
+    vplResult result = VPL_SUCCESS;
+    while (result == VPL_SUCCESS && countPaths(wider) < paths) {
+        result = vplTruth_Refine(run, wider);
+    }
+    if (result != VPL_SUCCESS) {
+        vplTruth_Destroy(wider);
+        return result;
+    }
+    *widerOut = wider;
+    return VPL_SUCCESS;
+}
+
 vplResult vplWidenTruth(vplRenderer* r)
 {
     vplImage* image = NULL;
     vplTruth* wider;
     const double start = vplClockMs();
     TRY(vplRenderer_Resolve(r, &image));
-    const vplResult result = vplTruth_Create(&r->runner.run, image, vplCountWiderTruth(r), &wider);
+    const vplResult result = createWiderTruth(r, image, countPaths(r->truth), &wider);
     vplImage_Destroy(image);
-    TRY(result);
+    TRY(result); // a cancelled render begins the wider truth again, and so ends with the same bits
     vplLog(r->runner.run.context, VPL_LOG_INFO, "compares %d pixels with paths instead of %d",
            vplTruth_CountPixels(wider), vplTruth_CountPixels(r->truth));
-    const double paths = countPaths(r->truth);
     vplForgetTruth(r);
     r->truth = wider;
     r->spreadBefore = INFINITY;
-    while (countPaths(r->truth) < paths) {
-        TRY(vplTruth_Refine(&r->runner.run, r->truth));
-    }
     vplRun_AddTime(&r->runner.run, "truth", start);
     return VPL_SUCCESS;
 }
