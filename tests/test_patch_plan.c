@@ -299,7 +299,33 @@ TEST(PatchesTakeOverWhereLightsNeedFarMore, 2, SLOW)
 // A fifth of the virtual lights reaches the picture: patches come first, and more of them follow, not virtual lights.
 TEST(PatchesComeFirstWhereDoorsHideLights, 2, SLOW)
 {
-    endWithPatches(context, "examples/scenes/flat.json", 128, 0.08, 2, VPL_METHOD_RADIOSITY);
+    endWithPatches(context, "examples/scenes/flat.json", 144, 0.08, 2, VPL_METHOD_RADIOSITY);
+}
+
+// The side of the squares of pixels that share lights, or the rays of the gather if patches come first, for a picture of 16:9.
+static int sharedBy(const vplScene* scene, int width, double error, double ms)
+{
+    vplRenderOptions o = optionsFor(error);
+    o.stop.budgetMs = ms;
+    o.output.width = width;
+    o.output.height = width * 9 / 16;
+    o = planned(scene, &o);
+    return o.method == VPL_METHOD_RADIOSITY ? o.radiosity.gather : o.pipeline.interleave;
+}
+
+// Where 8 pixels are a large part of a surface, fewer pixels share lights, and none share the rays of a gather.
+TEST(TinyPicturesShareLittle, 1)
+{
+    vplScene* flat = openScene(context, "examples/scenes/flat.json");
+    vplScene* loft = openScene(context, "examples/scenes/loft.json");
+    assert_int_equal(sharedBy(flat, 128, 0.1, 0), 0);
+    assert_int_equal(sharedBy(flat, 144, 0.1, 0), 16);
+    assert_int_equal(sharedBy(loft, 128, 0.2, 0), 4);
+    assert_int_equal(sharedBy(loft, 144, 0.2, 0), 8);
+    assert_int_equal(sharedBy(loft, 128, 0, 1000), 4);
+    assert_int_equal(sharedBy(loft, 144, 0, 1000), 8);
+    vplScene_Destroy(flat);
+    vplScene_Destroy(loft);
 }
 
 static int patchesFor(const vplScene* scene, double error)

@@ -80,20 +80,31 @@ static void chooseParticles(const vplRunner* r, vplPlan* p)
 // triangles are that small. Scenes of few triangles have few edges to blur, and keep K = 8 (furnace and plain at 2 %, 320x180: 0.45 and 0.8
 // of the time with K = 4; loft, which has 492 triangles, would take 1.5 times as long). In small pictures 8 pixels are a large part of a
 // surface, so these keep K = 4 (with K = 8, room-area at 3 %, 96x54, casts 2 to 5 times the rays with four of six seeds). In tiny pictures K
-// is 4 for any error: at 20 %, 96x54, shade takes a third of the time and hall two thirds (medians of 8 and 11 seeds), boxes 0.12 s instead of
-// 0.07. At 160x90 hall takes half of the time, but shade twice and loft 1.6 times as long.
+// is 4 for any error and for any time: at 20 %, 96x54, shade takes a third of the time and hall two thirds (medians of 8 and 11 seeds), boxes
+// 0.12 s instead of 0.07; in 1 s six-rooms has 9 % of error instead of 15, shade 30 instead of 45, hall 26 instead of 32 (but 50 instead of
+// 37 in 0.2 s). At 160x90 and 20 % hall takes half of the time, but shade twice and loft 1.6 times as long.
 static const double FINE = 0.04, FINE_IF_CROWDED = 0.15;
 enum { FEW_TRIANGLES = 128, SMALL_PICTURE = 50000, TINY_PICTURE = 10000 };
 
-// The error below which K is 4.
-static double needsLittleBlurBelow(const vplRunner* r, const vplRenderOptions* o)
+static double countPixels(const vplRenderOptions* o)
+{
+    return (double)o->output.width * o->output.height;
+}
+
+bool vplIsTinyPicture(const vplRenderOptions* o)
+{
+    return countPixels(o) < TINY_PICTURE;
+}
+
+// Tests whether the error that was asked for, or the picture, needs K = 4.
+static bool allowsLittleBlur(const vplRunner* r, const vplRenderOptions* o)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const double pixels = (double)o->output.width * o->output.height;
-    return pixels < TINY_PICTURE                                        ? INFINITY
-           : isCrowded(r, o)                                            ? FINE_IF_CROWDED
-           : g->triangleCount > FEW_TRIANGLES || pixels < SMALL_PICTURE ? FINE
-                                                                        : 0;
+    const bool small = countPixels(o) < SMALL_PICTURE;
+    const double fine = isCrowded(r, o)                             ? FINE_IF_CROWDED
+                        : g->triangleCount > FEW_TRIANGLES || small ? FINE
+                                                                    : 0;
+    return vplIsTinyPicture(o) || (o->stop.maxError > 0 && o->stop.maxError < fine);
 }
 
 // From this error on, four samples per pixel are enough for edges: they take 0.8 of the time of eight (boxes, conference-spot, sponza-sun
@@ -104,12 +115,12 @@ static const double LARGE_ERROR = 0.15;
 static void chooseLights(const vplRunner* r, vplPlan* p, double error)
 {
     vplRenderOptions* o = &p->options;
-    const bool large = (double)o->output.width * o->output.height >= MANY_PIXELS;
+    const bool large = countPixels(o) >= MANY_PIXELS;
     const bool goes = o->stop.budgetMs > 0 || o->stop.maxError > 0;
     if (o->particles.count < 0 && goes) {
         chooseParticles(r, p);
     }
-    if (o->pipeline.interleave < 0 && o->stop.maxError > 0 && o->stop.maxError < needsLittleBlurBelow(r, o)) {
+    if (o->pipeline.interleave < 0 && goes && allowsLittleBlur(r, o)) {
         o->pipeline.interleave = 4;
         vplDecide(p, "interleave", "so small an error or picture allows little blur");
     }

@@ -12,6 +12,9 @@ int vplMethodsFor(const vplRenderOptions* options);
 // The method that comes first among those, without a look at the scene; Keller's where there is none.
 vplMethod vplFirstMethodFor(const vplRenderOptions* options);
 
+// True where 8 pixels are so large a part of a surface that what they share, lights or the rays of a gather, blurs much.
+bool vplIsTinyPicture(const vplRenderOptions* options);
+
 // The largest share of all surfaces that area lights may be for 64 points to stand for them.
 #define VPL_MOST_LAMPS 0.1
 
