@@ -581,3 +581,25 @@ TEST(ThousandsOfLampsHaveAPictureInTime, 2)
     vplRenderer_Destroy(r);
     vplScene_Destroy(scene);
 }
+
+// How many of 1,000 lamps a tree chooses for each point of the first picture.
+static int chosenInTime(const vplScene* scene, double ms)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderer* r;
+    o.output.width = 1280;
+    o.output.height = 720;
+    o.stop.budgetMs = ms;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    const int samples = vplRenderer_GetPlan(r)->options.lights.emitterSamples;
+    vplRenderer_Destroy(r);
+    return samples;
+}
+
+TEST(AFirstPictureInAShortTimeHasOneLampForEachPoint, 1)
+{
+    vplScene* scene = lampScene(context, 1000);
+    assert_int_equal(chosenInTime(scene, 20), 1);
+    assert_int_equal(chosenInTime(scene, 20000), 4);
+    vplScene_Destroy(scene);
+}
