@@ -82,7 +82,7 @@ static void chooseParticles(const vplRunner* r, vplPlan* p)
 // surface, so these keep K = 4 (with K = 8, room-area at 3 %, 96x54, casts 2 to 5 times the rays with four of six seeds). In tiny pictures K
 // is 4 for any error and for any time: at 20 %, 96x54, shade takes a third of the time and hall two thirds (medians of 8 and 11 seeds), boxes
 // 0.12 s instead of 0.07; in 1 s six-rooms has 9 % of error instead of 15, shade 30 instead of 45, hall 26 instead of 32 (but 50 instead of
-// 37 in 0.2 s). At 160x90 and 20 % hall takes half of the time, but shade twice and loft 1.6 times as long.
+// 37 in 0.2 s). But hall at 10 % takes 1.5 times as long. At 160x90 and 20 % hall takes half of the time, shade twice and loft 1.6 times as long.
 static const double FINE = 0.04, FINE_IF_CROWDED = 0.15;
 enum { FEW_TRIANGLES = 128, SMALL_PICTURE = 50000, TINY_PICTURE = 10000 };
 
