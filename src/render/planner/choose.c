@@ -59,15 +59,19 @@ static bool isCrowded(const vplRunner* r, const vplRenderOptions* o)
     return vplTrianglesPerPixel(r, o) > TRIANGLES_PER_PIXEL;
 }
 
+static double countPixels(const vplRenderOptions* o)
+{
+    return (double)o->output.width * o->output.height;
+}
+
 // Chooses the number of particles of a pass.
 static void chooseParticles(const vplRunner* r, vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
-    const double pixels = (double)o->output.width * o->output.height;
     const bool crowded = isCrowded(r, o);
-    o->particles.count = crowded                 ? PARTICLES_OF_LARGE_SCENE
-                         : pixels >= MANY_PIXELS ? PARTICLES_OF_LARGE_PICTURE
-                                                 : PARTICLES;
+    o->particles.count = crowded                         ? PARTICLES_OF_LARGE_SCENE
+                         : countPixels(o) >= MANY_PIXELS ? PARTICLES_OF_LARGE_PICTURE
+                                                         : PARTICLES;
     vplDecide(p, "particles", "%sin each pass; passes go on until the time or the error is reached",
               crowded ? "many triangles are drawn for each pixel " : "");
     if (crowded && o->stop.maxError > 0 && !(o->stop.budgetMs > 0)) {
@@ -75,28 +79,25 @@ static void chooseParticles(const vplRunner* r, vplPlan* p)
     }
 }
 
-// Interleaved shading blurs. With K = 4 and K = 8 it leaves an error of 1.6 and 2.3 % in the room, and of 7 and 8.6 % in conference-spot,
-// where triangles are as small as pixels. So K is 4 if the error that is asked for is below a limit: FINE, or FINE_IF_CROWDED where
-// triangles are that small. Scenes of few triangles have few edges to blur, and keep K = 8 (furnace and plain at 2 %, 320x180: 0.45 and 0.8
-// of the time with K = 4; loft, which has 492 triangles, would take 1.5 times as long). In small pictures 8 pixels are a large part of a
-// surface, so these keep K = 4 (with K = 8, room-area at 3 %, 96x54, casts 2 to 5 times the rays with four of six seeds). In tiny pictures K
-// is 4 for any error and for any time: at 20 %, 96x54, shade takes a third of the time and hall two thirds (medians of 8 and 11 seeds), boxes
-// 0.12 s instead of 0.07; in 1 s six-rooms has 9 % of error instead of 15, shade 30 instead of 45, hall 26 instead of 32 (but 50 instead of
-// 37 in 0.2 s). But hall at 10 % takes 1.5 times as long. At 160x90 and 20 % hall takes half of the time, shade twice and loft 1.6 times as long.
-static const double FINE = 0.04, FINE_IF_CROWDED = 0.15;
-enum { FEW_TRIANGLES = 128, SMALL_PICTURE = 50000, TINY_PICTURE = 10000 };
-
-static double countPixels(const vplRenderOptions* o)
-{
-    return (double)o->output.width * o->output.height;
-}
+// Interleaved shading blurs: K x K pixels share lights. In tiny pictures 8 pixels are a large part of a surface, so K is 4 there for any error
+// and any time. At 96x54, against K = 8: for 20 %, shade takes a third of the time, hall two thirds and boxes 0.12 instead of 0.07 s; for 10 %,
+// hall takes 1.5 times as long; in 1 s, six-rooms has 9 % of error instead of 15, shade 30 instead of 45, hall 26 instead of 32. At 160x90 and
+// 20 %, hall takes half of the time, but shade twice and loft 1.6 times as long.
+enum { TINY_PICTURE = 10000 };
 
 bool vplIsTinyPicture(const vplRenderOptions* o)
 {
     return countPixels(o) < TINY_PICTURE;
 }
 
-// Tests whether the error that was asked for, or the picture, needs K = 4.
+// In larger pictures K is 4 for small errors: below FINE, or below FINE_IF_CROWDED where triangles are as small as pixels. With K = 4 and K = 8
+// the room has an error of 1.6 and 2.3 %, conference-spot of 7 and 8.6 %. Scenes of few triangles have few edges to blur, and keep K = 8
+// (furnace and plain at 2 %, 320x180: 0.45 and 0.8 of the time with K = 4; loft, which has 492 triangles, would take 1.5 times as long),
+// unless the picture is small (with K = 8, room-area at 3 %, 96x54, casts 2 to 5 times the rays with four of six seeds).
+static const double FINE = 0.04, FINE_IF_CROWDED = 0.15;
+enum { FEW_TRIANGLES = 128, SMALL_PICTURE = 50000 };
+
+// Tests whether the picture or the error that was asked for needs K = 4.
 static bool allowsLittleBlur(const vplRunner* r, const vplRenderOptions* o)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
