@@ -9,7 +9,7 @@ MODE    ?= release
 OPENMP  ?= 1
 PREFIX  ?= /usr/local
 # All processors, unless the caller said otherwise; V=1 shows whole commands.
-JOBS    := $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 1))
+JOBS     = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 1))
 Q       := $(if $(V),,@)
 DESTDIR ?=
 
@@ -105,6 +105,11 @@ NULLS          := $(if $(shell command -v python3),$(BUILD)/nulls)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c examples/tasks/*.c))
 
 .PHONY: all libs programs test-programs help deps demo test check-all portability lint determinism bench bench-peers golden gallery install uninstall clean format fuzz soak faults coverage test-mpi
+
+# These call make again, so they may not run beside other goals, which would build the same files.
+ifneq ($(filter all demo test,$(MAKECMDGOALS)),)
+.NOTPARALLEL:
+endif
 
 # Headers that programs need, each with the Debian package that has it.
 NEEDS := jansson.h=libjansson-dev stb_image.h=libstb-dev

@@ -185,6 +185,12 @@ for what in links commands places; do
     check "ReadmeCheckCatchesWrong_$what" refuses tests/readme_check.sh $what "$build/vpl" "$scratch/README.md"
 done
 
+# An inner make takes part of the jobs of the outer one.
+shares_jobs() {
+    ! env -u MAKEFLAGS -u MFLAGS make -n -j2 BUILD="$scratch/make" all 2>&1 | grep jobserver
+}
+check InnerMakesShareTheJobs shares_jobs
+
 # Plain make installs nothing and names what it lacks; make test installs.
 installs() {
     make -n --no-print-directory "$@" | grep -q install-deps
