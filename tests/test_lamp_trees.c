@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Tests of trees of emitters as pictures use them: triangles that emit, the stage that makes trees, and their memory.
+#include "geometry/emission.h"
 #include "geometry/emitter_tree.h"
 #include "geometry/triangle.h"
 #include "lights/light_set.h"
 #include "path_scenes.h"
 #include "render/plan.h"
 #include "render/runner.h"
+#include "shading/kernels.h"
 
 enum { LAMPS = 100, CLOSE = 1024, SAMPLES = 64 };
 
@@ -30,6 +32,66 @@ static vplScene* hall(vplContext* context, int quads, int points)
     }
     addCamera(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1), 1.4);
     return scene;
+}
+
+// Blocks of points, of which every third is not covered, with every instruction set.
+static void checkBlocks(const vplEmitterTree* tree)
+{
+    enum { BLOCKS = 60 };
+    for (uint64_t i = 0; i < BLOCKS * VPL_ISA_COUNT; i++) {
+        const vplIsa isa = (vplIsa)(i % VPL_ISA_COUNT);
+        vplSurface s;
+        int32_t covered[VPL_LANES];
+        vplVec3 p[VPL_LANES], n[VPL_LANES];
+        double choice[VPL_LANES];
+        vplChosenSource chosen[VPL_LANES];
+        for (uint64_t l = 0, k = VPL_LANES * (i / VPL_ISA_COUNT); l < VPL_LANES; l++, k++) {
+            p[l] = pointAt(20000 + k, 1);
+            n[l] = vplNormalize(pointAt(30000 + k, 1));
+            s.px[l] = p[l].x, s.py[l] = p[l].y, s.pz[l] = p[l].z;
+            s.nx[l] = n[l].x, s.ny[l] = n[l].y, s.nz[l] = n[l].z;
+            covered[l] = k % 3 > 0;
+            choice[l] = uniformAt(72, k);
+        }
+        if (vplHasIsa(isa)) {
+            vplGetShadingKernels(isa, VPL_LIGHTING_PHYSICAL)
+                ->chooseSources(tree, &s, covered, choice, chosen);
+        }
+        for (int l = 0; l < VPL_LANES && vplHasIsa(isa); l++) {
+            const vplChosenSource alone = vplEmitterTree_Choose(tree, p[l], n[l], choice[l]);
+            assert_int_equal(chosen[l].source, covered[l] ? alone.source : -1);
+            if (chosen[l].source >= 0) {
+                assert_memory_equal(&chosen[l].probability, &alone.probability, sizeof alone.probability);
+                assert_memory_equal(&chosen[l].rest, &alone.rest, sizeof alone.rest);
+            }
+        }
+    }
+}
+
+TEST(SixteenPointsChooseSourcesAsEachAlone, 1)
+{
+    vplScene* scene = hall(context, LAMPS, LAMPS);
+    vplEmitterDef emitters[LAMPS];
+    vplGeometry* g;
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    for (int k = 0; k < 3; k++) { // points, points and spots, triangles
+        for (int i = 0; i < LAMPS; i++) {
+            emitters[i] = *vplScene_GetEmitter(scene, i);
+            emitters[i].type = k == 1 && i % 3 == 0 ? VPL_EMITTER_SPOT : VPL_EMITTER_POINT;
+        }
+        vplEmission* e;
+        vplEmitterTree* tree;
+        vplArena* arena = vplArena_Create(context);
+        assert_int_equal(vplEmission_Create(g, emitters, LAMPS, &e), VPL_SUCCESS);
+        assert_int_equal(vplEmitterTree_Create(arena, e, k == 2 ? e->firstTriangle : 0,
+                                               k == 2 ? e->sourceCount : e->firstTriangle, &tree),
+                         VPL_SUCCESS);
+        checkBlocks(tree);
+        vplArena_Destroy(arena);
+        vplEmission_Destroy(e);
+    }
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
 }
 
 // Points of a wall so close to each other that they receive the same light; each chooses for itself.

@@ -4,7 +4,7 @@
 // Greg Humphreys, Physically Based Rendering, 4th edition 2023, section 12.6.3, for its bounds without angles. Departs:
 // nodes are halved at the middle of the longest side of the boxes of centres and axes, as those of the light tree of
 // Lightcuts are (src/lights/light_tree.c), whose nodes bound points with one lobe and carry representatives.
-#include "geometry/emitter_tree.h"
+#include "geometry/emitter_nodes.h"
 #include "base/arena.h"
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
@@ -18,9 +18,6 @@ enum { MAX_HALVINGS = 64 }; // deeper nodes are split into halves of equal count
 // Weight of axes: a difference of 1 counts as much as this share of the diagonal of all sources.
 static const double TURN = 0.25;
 
-// Bounds of cosines are wider by this, because the directions of sources and normals are rounded.
-static const double MARGIN = 1e-6;
-
 // A source while the tree is built, or a node with the sources that it bounds.
 typedef struct Bound {
     double low[3], high[3]; // box
@@ -30,22 +27,6 @@ typedef struct Bound {
     double cosReach; // light leaves in directions up to this angle off some axis in the cone
     double strength; // intensity on the axis, W/sr, mean of the channels
 } Bound;
-
-// Nodes of n sources are 2n - 1: the node, those of its left half, those of its right half.
-typedef struct Node {
-    float centre[3], radius; // of a sphere around the box
-    float axis[3];
-    float cosSpread, sinSpread, cosReach;
-    double strength;
-    int left; // sources in the left half; 0: one source
-} Node;
-
-struct vplEmitterTree {
-    Node* nodes;
-    int* sources;   // in the order of leaves
-    int* positions; // in that order, of source first + i; without meaning where it is not in the tree
-    int first, end, count;
-};
 
 // ---- sources
 
@@ -147,13 +128,13 @@ static Bound boundRange(const Build* build, int first, int count)
     for (int i = 0; i < count; i++) {
         widenCone(&all, boundAt(build, first + i));
     }
-    all.cosSpread = all.cosSpread < -1 + 2 * MARGIN ? -1 : all.cosSpread - MARGIN;
+    all.cosSpread = all.cosSpread < -1 + 2 * VPL_CONE_MARGIN ? -1 : all.cosSpread - VPL_CONE_MARGIN;
     all.sinSpread = sqrt(1 - all.cosSpread * all.cosSpread);
     return all;
 }
 
 // The sphere's radius is rounded up, because its centre is rounded; that of one point stays 0.
-static void fillNode(Node* node, const Bound* b)
+static void fillNode(vplEmitterNode* node, const Bound* b)
 {
     double square = 0;
     for (int k = 0; k < 3; k++) {
@@ -163,7 +144,7 @@ static void fillNode(Node* node, const Bound* b)
         const double farther = below > above ? below : above;
         square += farther * farther;
     }
-    node->radius = (float)(sqrt(square) * (1 + MARGIN));
+    node->radius = (float)(sqrt(square) * (1 + VPL_CONE_MARGIN));
     node->axis[0] = b->axis.x;
     node->axis[1] = b->axis.y;
     node->axis[2] = b->axis.z;
@@ -206,7 +187,7 @@ static int partition(const Build* b, int first, int count)
 static void build(const Build* b, int node, int first, int count, int depth)
 {
     const Bound bound = boundRange(b, first, count);
-    Node* n = &b->tree->nodes[node];
+    vplEmitterNode* n = &b->tree->nodes[node];
     fillNode(n, &bound);
     n->left = 0;
     if (count == 1) {
@@ -245,6 +226,7 @@ static vplResult fill(vplEmitterTree* t, const vplEmission* emission, vplArena* 
     for (int i = t->first, at = 0; i < t->end; i++) {
         if (hasPlace(emission, i)) {
             bounds[i - t->first] = boundSource(emission, i);
+            t->cones = t->cones || bounds[i - t->first].cosSpread > -1;
             t->sources[at++] = i;
         }
     }
@@ -285,88 +267,16 @@ void vplEmitterTree_ForgetPlaces(vplEmitterTree* t)
 
 // ---- choosing
 
-// Cosine and sine of max(a - b, 0), of two angles up to half a turn.
-typedef struct Angle {
-    double cosine, sine;
-} Angle;
-
-static inline Angle subtract(Angle a, double cosine, double sine)
-{
-    return a.cosine > cosine ? (Angle){1, 0}
-                             : (Angle){a.cosine * cosine + a.sine * sine, a.sine * cosine - a.cosine * sine};
-}
-
-static inline Angle angleOf(double cosine)
-{
-    const double square = 1 - cosine * cosine;
-    return (Angle){cosine, square > 0 ? sqrt(square) : 0};
-}
-
-// A mean of two cosines of an angle: the largest in a node, which keeps its sources, and that of its centre, which tells
-// halves apart. Variance is 0.3 to 0.7 of that with the largest alone (halls with 100 and 1,000 lamps).
-static inline double blend(double largest, double middle)
-{
-    return 0.125 * largest + 0.875 * (middle > 0 ? middle : 0);
-}
-
-// About the strength that reaches the point, over the squared distance; 0 only where no source of the node lights it.
-// Inside of the sphere nothing is known of directions.
-static double importance(const Node* node, vplVec3 p, vplVec3 n)
-{
-    const double x = (double)node->centre[0] - p.x, y = (double)node->centre[1] - p.y,
-                 z = (double)node->centre[2] - p.z;
-    const double d2 = x * x + y * y + z * z, r2 = (double)node->radius * node->radius;
-    if (d2 <= r2) {
-        return r2 > 0 ? node->strength / r2 : 0;
-    }
-    const double inverse = 1 / sqrt(d2), sinBox = node->radius * inverse;
-    const double cosBox = sqrt(1 - sinBox * sinBox), facing = (n.x * x + n.y * y + n.z * z) * inverse;
-    const double received = subtract(angleOf(facing), cosBox, sinBox).cosine + MARGIN;
-    if (received <= 0) {
-        return 0;
-    }
-    double sent = 1;
-    if (node->cosSpread > -1) {
-        const double off = -(node->axis[0] * x + node->axis[1] * y + node->axis[2] * z) * inverse;
-        const Angle beyond = subtract(angleOf(off), (double)node->cosSpread, (double)node->sinSpread);
-        const double least = subtract(beyond, cosBox, sinBox).cosine;
-        if (least <= (double)node->cosReach - MARGIN) {
-            return 0;
-        }
-        sent = blend(least > 0 ? least + MARGIN : MARGIN,
-                     beyond.cosine > (double)node->cosReach ? beyond.cosine : 0);
-    }
-    return node->strength * blend(received, facing) * sent / d2;
-}
-
-// The share of the left half; negative where neither half lights the point.
-static double leftShare(const vplEmitterTree* t, int node, vplVec3 position, vplVec3 normal)
-{
-    const double left = importance(&t->nodes[node + 1], position, normal),
-                 right = importance(&t->nodes[node + 2 * t->nodes[node].left], position, normal);
-    return left + right > 0 ? left / (left + right) : -1;
-}
-
 vplChosenSource vplEmitterTree_Choose(const vplEmitterTree* t, vplVec3 position, vplVec3 normal,
                                       double choice)
 {
-    vplChosenSource chosen = {-1, 1, choice};
-    int node = 0, first = 0;
-    while (t->nodes[node].left > 0) {
-        const int left = t->nodes[node].left;
-        const double share = leftShare(t, node, position, normal);
-        if (share < 0) {
-            return chosen;
-        }
-        const bool goesLeft = chosen.rest < share;
-        chosen.rest = goesLeft ? chosen.rest / share : (chosen.rest - share) / (1 - share);
-        chosen.rest = chosen.rest < 1 ? chosen.rest : 1 - DBL_EPSILON;
-        chosen.probability *= goesLeft ? share : 1 - share;
-        first += goesLeft ? 0 : left;
-        node += goesLeft ? 1 : 2 * left;
+    vplDescent d = vplDescent_Start(choice);
+    for (int left; (left = t->nodes[d.node].left) > 0 && !d.ended;) {
+        d = vplDescent_Step(
+            d, left,
+            vplEmitterTree_LeftShare(t, d.node + 1, d.node + 2 * left, position, normal, t->cones, true));
     }
-    chosen.source = t->sources[first];
-    return chosen;
+    return (vplChosenSource){d.ended ? -1 : t->sources[d.first], d.probability, d.rest};
 }
 
 double vplEmitterTree_Probability(const vplEmitterTree* t, vplVec3 position, vplVec3 normal, int source)
@@ -375,7 +285,8 @@ double vplEmitterTree_Probability(const vplEmitterTree* t, vplVec3 position, vpl
     double probability = 1;
     for (int node = 0, first = 0; t->nodes[node].left > 0 && probability > 0;) {
         const int left = t->nodes[node].left;
-        const double share = leftShare(t, node, position, normal);
+        const double share =
+            vplEmitterTree_LeftShare(t, node + 1, node + 2 * left, position, normal, t->cones, true);
         const bool goesLeft = position0 < first + left;
         probability *= share < 0 ? 0 : goesLeft ? share : 1 - share;
         first += goesLeft ? 0 : left;

@@ -29,11 +29,6 @@ static float receive(const vplEmitterRay* e, vplVec3 p, vplVec3 n)
     return cosine * (step * step * (3 - 2 * step));
 }
 
-// The numbers in [0, 1) of a choice: one that chooses the source and a coordinate on it, and another coordinate.
-typedef struct Numbers {
-    double source, across;
-} Numbers;
-
 // One choice of all lanes.
 typedef struct Choice {
     vplVec3 way[VPL_LANES];
@@ -41,41 +36,36 @@ typedef struct Choice {
     vplRgb light[VPL_LANES]; // intensity or radiance
 } Choice;
 
-typedef void ChooseFcn(const vplReceiver* r, const vplDirectLight* direct, int lane, const Numbers* u,
-                       Choice* out);
+// Light of the chosen source at one lane; `across`, [0, 1), is a coordinate on a triangle beside the rest of the choice.
+typedef void LightFcn(const vplReceiver* r, const vplDirectLight* direct, int lane, vplChosenSource chosen,
+                      double across, Choice* out);
 
-static void chooseEmitter(const vplReceiver* r, const vplDirectLight* direct, int l, const Numbers* u,
-                          Choice* out)
+static void lightFromEmitter(const vplReceiver* r, const vplDirectLight* direct, int l, vplChosenSource c,
+                             double across, Choice* out)
 {
+    (void)across;
     const vplSurface* s = r->points->surface;
     const vplVec3 p = vplSurface_At(s, l), n = vplVec(s->nx[l], s->ny[l], s->nz[l]);
-    const vplChosenSource c = vplEmitterTree_Choose(direct->tree, p, n, u->source);
-    if (c.source >= 0) {
-        const int emitter = direct->trees->emission->sources[c.source].emitter;
-        const vplEmitterRay* e = &direct->rays[emitter];
-        out->amount[l] = (float)((double)receive(e, p, n) / (direct->perPoint * c.probability));
-        out->way[l] = vplSub(e->position, r->starts->hit[l].position);
-        out->light[l] = direct->emitters[emitter].intensity;
-    }
+    const int emitter = direct->trees->emission->sources[c.source].emitter;
+    const vplEmitterRay* e = &direct->rays[emitter];
+    out->amount[l] = (float)((double)receive(e, p, n) / (direct->perPoint * c.probability));
+    out->way[l] = vplSub(e->position, r->starts->hit[l].position);
+    out->light[l] = direct->emitters[emitter].intensity;
 }
 
 // Squared distances count as at least this share of the triangle's area: nearer, the point's density would blow the light up.
 static const double LEAST_SQUARE = 0x1p-10;
 
-// Chooses a point on a triangle. The amount is the irradiance by a unit of radiance over the density of the point.
-static void chooseTriangle(const vplReceiver* r, const vplDirectLight* direct, int l, const Numbers* u,
-                           Choice* out)
+// Light of a point on the triangle. The amount is the irradiance by a unit of radiance over the density of the point.
+static void lightFromTriangle(const vplReceiver* r, const vplDirectLight* direct, int l, vplChosenSource c,
+                              double across, Choice* out)
 {
     const vplSurface* s = r->points->surface;
     const vplGeometry* g = r->shading->geometry;
     const vplVec3 p = vplSurface_At(s, l), n = vplVec(s->nx[l], s->ny[l], s->nz[l]);
-    const vplChosenSource c = vplEmitterTree_Choose(direct->triangleTree, p, n, u->source);
-    if (c.source < 0) {
-        return;
-    }
     const int triangle = direct->trees->emission->sources[c.source].triangle;
     const vplHit on = vplGeometry_SampleTriangle(g, triangle, (float)c.rest * 0x1.fffffep-1f,
-                                                 (float)u->across * 0x1.fffffep-1f);
+                                                 (float)across * 0x1.fffffep-1f);
     const vplVec3 way = vplSub(on.position, p);
     const double x = way.x, y = way.y, z = way.z, square = x * x + y * y + z * z;
     const double received = n.x * x + n.y * y + n.z * z,
@@ -100,7 +90,8 @@ static void hashPositions(const vplPoints* points, uint64_t seed, double out[VPL
 }
 
 typedef struct Choosing {
-    ChooseFcn* choose;
+    const vplEmitterTree* tree;
+    LightFcn* light;
     int count; // choices of a point
     float weight;
 } Choosing;
@@ -112,13 +103,22 @@ static void addChoices(const vplReceiver* r, const vplDirectLight* direct, const
     double start[VPL_LANES], across[VPL_LANES];
     hashPositions(r->points, CHOICE_SEED, start);
     hashPositions(r->points, ACROSS_SEED, across);
+    int32_t covered[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        covered[l] = r->points->triangle[l] >= 0;
+    }
     for (int k = 0; k < choosing->count; k++) {
         Choice c = {.amount = {0}};
+        double numbers[VPL_LANES];
+        vplChosenSource chosen[VPL_LANES];
+        for (int l = 0; l < VPL_LANES; l++) {
+            numbers[l] = (k + start[l]) / choosing->count;
+        }
+        r->shading->kernels.chooseSources(choosing->tree, r->points->surface, covered, numbers, chosen);
         for (int l = 0; l < VPL_LANES; l++) {
             const double along = across[l] + k * GOLDEN;
-            const Numbers u = {(k + start[l]) / choosing->count, along - floor(along)};
-            if (r->points->triangle[l] >= 0) {
-                choosing->choose(r, direct, l, &u, &c);
+            if (chosen[l].source >= 0) {
+                choosing->light(r, direct, l, chosen[l], along - floor(along), &c);
             }
         }
         vplCastShadowRays(r, c.way, false, c.amount);
@@ -136,7 +136,7 @@ void vplAddChosenEmitters(const vplShading* shading, const vplDirectLight* direc
     vplRayStarts starts;
     vplFindRayStarts(shading, points, &starts);
     addChoices(&(vplReceiver){shading, points, &starts, rays}, direct,
-               &(Choosing){chooseEmitter, direct->perPoint, direct->weight}, irradiance);
+               &(Choosing){direct->tree, lightFromEmitter, direct->perPoint, direct->weight}, irradiance);
 }
 
 void vplAddChosenTriangles(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
@@ -145,5 +145,6 @@ void vplAddChosenTriangles(const vplShading* shading, const vplDirectLight* dire
     vplRayStarts starts;
     vplFindRayStarts(shading, points, &starts);
     addChoices(&(vplReceiver){shading, points, &starts, rays}, direct,
-               &(Choosing){chooseTriangle, direct->trianglesPerPoint, 1}, irradiance);
+               &(Choosing){direct->triangleTree, lightFromTriangle, direct->trianglesPerPoint, 1},
+               irradiance);
 }

@@ -6,6 +6,7 @@
 #include <vpl/shading.h>
 
 #include "base/isa.h"
+#include "geometry/emitter_tree.h"
 #include "lights/light_tree.h"
 #include "visibility/blocks.h"
 
@@ -48,6 +49,11 @@ typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vp
                                const struct vplPoints* points, float irradiance[restrict 3][VPL_LANES],
                                int64_t* rays);
 
+// vplEmitterTree_Choose for each point that is covered, by its number in [0, 1); -1 for the others.
+typedef void vplChooseSourcesFcn(const vplEmitterTree* tree, const vplSurface* surface,
+                                 const int32_t covered[VPL_LANES], const double choice[VPL_LANES],
+                                 vplChosenSource out[VPL_LANES]);
+
 // The kernels of one vplLighting: X(type, field, function). Tile and task kernels get the vplShading as data.
 #define VPL_SHADING_KERNELS(X, Lighting)                                                                     \
     X(vplLightKernelFcn, addLights, vplAddLights##Lighting)                                                  \
@@ -55,6 +61,7 @@ typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vp
     X(vplClusterBoundFcn, clusterBound, vplClusterBound##Lighting)                                           \
     X(vplPointKernelFcn, lightPoint, vplLightsOfPoint)                                                       \
     X(vplAddEmittersFcn, addEmitters, vplAddEmitters)                                                        \
+    X(vplChooseSourcesFcn, chooseSources, vplChooseSources)                                                  \
     X(vplFragmentFcn, surface, vplShadeSurface)   /* surface shader of the passes */                         \
     X(vplFragmentFcn, direct, vplShadeDirect)     /* fragment shader: direct light */                        \
     X(vplPassesFcn, lights, vplShadeLights)       /* fragment shader: passes of virtual lights */            \
