@@ -94,16 +94,23 @@ static double lightsPerPixel(const Scale* s)
     }
 }
 
+double vplChoiceWork(double count)
+{
+    const double levels = log2(fmax(count, 2));
+    return 0.05 * levels * levels;
+}
+
 // Light of emitters and area lights in each pixel.
 static void addDirect(const Scale* s, double pixels, vplWork* w)
 {
     const vplRenderOptions* o = &s->plan->options;
     const bool area = s->lamps && o->method != VPL_METHOD_KELLER;
     const bool sky = s->plan->hasSky && o->method != VPL_METHOD_KELLER;
-    const double rays =
-        (s->plan->emitterRays ? s->emitters : 0) +
-        (area ? o->lights.areaLightSamples * (vplPixelsChooseTriangles(s->plan) ? VPL_CHOICE_WORK : 1) : 0) +
-        (sky ? o->lights.skySamples : 0);
+    const double rays = (s->plan->emitterRays ? s->emitters : 0) +
+                        (area ? o->lights.areaLightSamples *
+                                    (vplPixelsChooseTriangles(s->plan) ? vplChoiceWork(VPL_MOST_EMITTERS) : 1)
+                              : 0) +
+                        (sky ? o->lights.skySamples : 0);
     if (s->plan->showsDirect) {
         // Emitters are mostly in front of what is seen, also where surfaces do not face each other.
         w->counts[SHADOW_RAY] += pixels * rays * fmax(0.24, 0.6 * s->probe.facing) * s->depth;
@@ -115,7 +122,8 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
 // The cost of the emitters' light where a short ray hits a surface, in shadow rays.
 static double hitEmitters(const vplPlan* p)
 {
-    return vplTreesOf(p).emitters <= p->emitterCount ? VPL_CHOSEN_AT_HIT * VPL_CHOICE_WORK : p->emitterCount;
+    return vplTreesOf(p).emitters <= p->emitterCount ? VPL_CHOSEN_AT_HIT * vplChoiceWork(p->emitterCount)
+                                                     : p->emitterCount;
 }
 
 // Short rays, a fifth or so of which hit something near.
@@ -327,7 +335,8 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
                .lamps = g->emits,
                .area = vplGeometry_Area(g),
                .sides = p->patchSides,
-               .emitters = p->emittersPerPoint > 0 ? VPL_CHOICE_WORK * p->emittersPerPoint : p->emitterCount,
+               .emitters = p->emittersPerPoint > 0 ? vplChoiceWork(p->emitterCount) * p->emittersPerPoint
+                                                   : p->emitterCount,
                .reflectance = vplGeometry_MeanReflectance(g)};
     const double doublings = log2(fmax(s.triangles, 2) / 32);
     s.depth = 1 + 0.1 * fmax(doublings, 0);
