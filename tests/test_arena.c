@@ -14,8 +14,8 @@ typedef struct Quota {
 
 static void* quotaAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
 {
-    (void)oldSize;
     Quota* quota = user;
+    assert_true((memory == NULL) == (oldSize == 0));
     if (newSize == 0) {
         quota->held -= memory != NULL;
         free(memory);

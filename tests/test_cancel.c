@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests of passes that are cancelled: the picture of the passes before is still there, and what follows has
 // the bits of a render that was never stopped.
+#include "base/context.h"
 #include "pass_cases.h"
 
 // Cancels at one call.
@@ -13,6 +14,38 @@ static bool stopOnce(void* user, double fraction)
     Stop* stop = user;
     assert_true(fraction >= 0 && fraction <= 1);
     return ++stop->calls != stop->at;
+}
+
+typedef struct Progress {
+    int calls;
+    double last;
+} Progress;
+
+static bool noteProgress(void* user, double fraction)
+{
+    Progress* p = user;
+    assert_true(fraction >= p->last);
+    p->calls++;
+    p->last = fraction;
+    return true;
+}
+
+static void doNothing(void* data, int index, int worker)
+{
+    (void)data;
+    (void)index;
+    (void)worker;
+}
+
+TEST_ALONE(ProgressEndsWithItsRange)
+{
+    vplContext* context = openTestContext(1);
+    Progress p = {0, 0};
+    assert_int_equal(
+        vplParallelForProgress(context, 10, doNothing, NULL, (vplProgressRange){noteProgress, &p, 0.25, 0.5}),
+        VPL_SUCCESS);
+    assert_true(p.calls >= 10 && p.last == 0.5);
+    closeTestContext(context);
 }
 
 // Renders with a stop at call `at`. Returns false if there were fewer calls.

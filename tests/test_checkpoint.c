@@ -236,3 +236,22 @@ TEST(AScenesHashIsOfItsContent, 1)
     vplScene_Destroy(a);
     vplScene_Destroy(b);
 }
+
+// One number that is not finite is enough, whatever follows.
+TEST_ALONE(StreamsNoteWhatIsNotFinite)
+{
+    for (int at = 0; at < 4; at++) {
+        float values[3] = {1, 2, 3};
+        double wide[3] = {1, 2, 3};
+        uint8_t bytes[sizeof values + sizeof wide];
+        values[at % 3] = at < 3 ? INFINITY : 1;
+        vplStream s = {.bytes = bytes, .writes = true, .finite = true};
+        vplStream_Floats(&s, values, 3);
+        assert_int_equal(s.finite, at == 3);
+        wide[at % 3] = at < 3 ? NAN : 1;
+        s.finite = true;
+        vplStream_Doubles(&s, wide, 3);
+        assert_int_equal(s.finite, at == 3);
+        assert_int_equal(s.at, sizeof bytes);
+    }
+}

@@ -283,19 +283,21 @@ TEST_ALONE(WhatClustersCannotDoIsRefused)
     assert_int_equal(vplImage_Create(s.context, WIDTH, HEIGHT, &image), VPL_SUCCESS);
     const vplAccumulation ways[] = {VPL_ACCUMULATE_MULTIPASS, VPL_ACCUMULATE_BATCHED,
                                     VPL_ACCUMULATE_LIGHTCUTS};
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 7; i++) {
         vplShadeDef def = clusteredDef(&s, COUNT, 0);
         def.batch = 1;
         def.cutError = 0.1f;
         def.accumulation = i < 3 ? ways[i] : VPL_ACCUMULATE_DEFERRED;
         def.lightRays = i == 3;
         s.clusters[5] = i == 4 ? -2 : i == 5 ? COUNT : 0;
+        s.clusters[0] = i == 6 ? -2 : 0;
         assert_int_equal(vplShadeView(s.geometry, &s.view, &def, image, NULL), VPL_INVALID_ARGUMENT);
         const char* message = takeMessage();
         assert_true(strstr(message, i < 3    ? "deferred and interleaved shading only"
                                     : i == 3 ? "no maps or rays of their own"
                                     : i == 4 ? "lightClusters[5] is -2, must be in [-1, 300)"
-                                             : "lightClusters[5] is 300, must be in [-1, 300)") != NULL);
+                                    : i == 5 ? "lightClusters[5] is 300, must be in [-1, 300)"
+                                             : "lightClusters[0] is -2, must be in [-1, 300)") != NULL);
     }
     vplImage_Destroy(image);
     closeSetting(&s);

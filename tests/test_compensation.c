@@ -69,6 +69,7 @@ static double givenBack(const vplGeometry* g, const vplShadeDef* def)
     assert_int_equal(vplCompensator_Open(&shading), VPL_SUCCESS);
     vplAddCompensation(&shading, &points, pixels, irradiance, &rays);
     vplArena_Destroy(shading.arena);
+    assert_true(rays > 0);
     for (int l = 0; l < VPL_LANES; l++) {
         assert_true(irradiance[0][l] == irradiance[1][l] && irradiance[1][l] == irradiance[2][l]);
         sum += (double)irradiance[0][l] / VPL_LANES / VPL_PI;

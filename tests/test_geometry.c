@@ -371,3 +371,8 @@ TEST(TrianglesWindTowardsTheirNormals, 1)
         vplScene_Destroy(scene);
     }
 }
+
+TEST_ALONE(NoGeometryHasNoArea)
+{
+    assert_true(vplGeometry_Area(NULL) == 0);
+}

@@ -624,6 +624,29 @@ TEST(WrongArgumentsAreRefused, 1)
     closeRoom(&room);
 }
 
+static bool noteProgress(void* user, double fraction)
+{
+    double* last = user;
+    assert_true(fraction >= *last && fraction <= 1);
+    *last = fraction;
+    return true;
+}
+
+TEST(ProgressOfLinksEndsAtOne, 1)
+{
+    Room room;
+    vplLinks* links = NULL;
+    vplLinkDef def = vplDefaultLinkDef();
+    double last = 0;
+    def.progress = noteProgress;
+    def.progressUser = &last;
+    openRoom(&room, boxInRoom(context), 500);
+    assert_int_equal(vplLinks_Create(room.sides, &def, &links), VPL_SUCCESS);
+    assert_true(last > 0.5);
+    vplLinks_Destroy(links);
+    closeRoom(&room);
+}
+
 TEST(CancellingLeavesNothing, 1)
 {
     Room room;

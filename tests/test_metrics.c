@@ -236,6 +236,30 @@ TEST(HeatMapsShowWhatTheyAreOf, 2)
     freePair(p);
 }
 
+// 0.01 beside black and 1 beside 0.99 are differences of 1.
+TEST(RelativeDifferencesAreOverOneHundredthMore, 1)
+{
+    static const float is[4] = {0.01f, 1.99f, 1, 0.5f}, shouldBe[4] = {0, 0.99f, 0, 0};
+    Pair p = makePair(context, 0, 4, 1);
+    vplImage* map;
+    for (int i = 0; i < 12; i++) {
+        p.a->pixels[i] = is[i / 3];
+        p.b->pixels[i] = shouldBe[i / 3];
+    }
+    vplHeatmapDef def = vplDefaultHeatmapDef();
+    def.of = VPL_HEAT_RELATIVE;
+    def.scale = 2;
+    assert_int_equal(vplImage_HeatmapOf(p.a, p.b, &def, &map), VPL_SUCCESS);
+    for (int c = 0; c < 3; c++) {
+        assertNear((double)map->pixels[c], (double)map->pixels[3 + c], 1e-5, "the same colour", c);
+    }
+    assert_true(fabsf(map->pixels[0] - map->pixels[6]) + fabsf(map->pixels[1] - map->pixels[7]) +
+                    fabsf(map->pixels[2] - map->pixels[8]) >
+                0.1f); // 100 has another
+    vplImage_Destroy(map);
+    freePair(p);
+}
+
 TEST(BadArgumentsAreRefusedInASentence, 1)
 {
     Pair p = makePair(context, 0, 8, 8);

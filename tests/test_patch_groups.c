@@ -92,6 +92,41 @@ TEST(EveryTriangleIsInOnePatch, 1)
     vplGeometry_Destroy(g);
 }
 
+// Two balls, one just around the other, of which one emits: their triangles lie between each other, but share no patch.
+TEST(GroupsHaveOneEmission, 1)
+{
+    vplScene* scene = ballRoom(context, 0, 0, 0.5f, 0);
+    int materials[2];
+    for (int i = 0; i < 2; i++) {
+        vplMaterialDef m = vplDefaultMaterialDef();
+        m.emission = (vplRgb){(float)i, (float)i, (float)i};
+        assert_int_equal(vplScene_AddMaterial(scene, &m, &materials[i]), VPL_SUCCESS);
+        Shape ball = icosphere(3);
+        placeShape(&ball, 0.4f + 0.001f * (float)i, (const double[3]){0.1 * i, 0.2 * i, 0}, vplVec(0, 0, 0));
+        vplObjectDef object = vplDefaultObjectDef();
+        object.material = materials[i];
+        assert_int_equal(tryAddShape(scene, &ball, false, &object), VPL_SUCCESS);
+        freeShape(&ball);
+    }
+    vplGeometry* g = buildGeometry(scene);
+    vplPatches* p = groupsOf(g, 100, 0, false);
+    int groups[2] = {0, 0};
+    assertWhole(g, p);
+    for (int i = p->patchCount - p->groupCount; i < p->patchCount; i++) {
+        const vplPatchParts parts = vplPatches_GetParts(p, i);
+        float emission[2] = {0, 0};
+        for (int k = 0; k < parts.count; k++) {
+            emission[k > 0] =
+                g->materials[g->triangleMaterials[p->nodes[parts.nodes[k]].triangle]].emission.r;
+            assert_true(k == 0 || emission[0] == emission[1]);
+        }
+        groups[emission[0] > 0]++;
+    }
+    assert_true(groups[0] > 1 && groups[1] > 1);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+}
+
 // The number of patches is the one asked for within 20 %, from what normals alone demand to four times the triangles.
 TEST(TheCountHolds, 1)
 {

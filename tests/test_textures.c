@@ -167,6 +167,32 @@ static double lookUp(const vplTexture* texture, double u, double v, float width)
     return (double)rgba[0];
 }
 
+// A footprint that is longer along v filters a picture as one that is longer along u does its transpose.
+TEST(BothDirectionsAreFilteredAlike, 1)
+{
+    enum { SIDE = 64, AT = 200 };
+    static float greys[SIDE * SIDE], turned[SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        greys[i] = (float)uniformAt(5, (uint64_t)i);
+        turned[i % SIDE * SIDE + i / SIDE] = greys[i];
+    }
+    vplTexture* across = makeTexture(context, greys, SIDE, SIDE, VPL_WRAP_REPEAT);
+    vplTexture* down = makeTexture(context, turned, SIDE, SIDE, VPL_WRAP_REPEAT);
+    for (uint64_t i = 0; i < AT; i++) {
+        const double u = uniformAt(6, 2 * i), v = uniformAt(6, 2 * i + 1);
+        const float longer = (float)(0.02 + 0.2 * uniformAt(7, i)), shorter = 0.02f;
+        // Rows of a texture begin at the top, where v is 1.
+        const vplTextureArea a = {.u = u, .v = v, .longU = longer, .shortV = shorter},
+                             b = {.u = 1 - v, .v = 1 - u, .longV = longer, .shortU = shorter};
+        float first[4], second[4];
+        vplTexture_Lookup(across, &a, first);
+        vplTexture_Lookup(down, &b, second);
+        assertNear((double)first[0], (double)second[0], 1e-4, "transposed", (int)i);
+    }
+    vplTexture_Release(across);
+    vplTexture_Release(down);
+}
+
 TEST(EveryLevelOfThePyramidHasTheMeanOfThePicture, 2)
 {
     static const int sizes[][2] = {{1, 1}, {2, 2}, {3, 5}, {7, 1}, {64, 64}, {100, 37}, {13, 129}};

@@ -2,6 +2,7 @@
 // Tests of the arithmetic of vpl tradeoff, of what its report says and shows, and of the PNG that it embeds.
 #include "test.h"
 
+#include "cli/tradeoff/svg.h"
 #include "cli/tradeoff/tradeoff.h"
 
 #include <stdlib.h>
@@ -290,4 +291,21 @@ TEST(EncodedPngIsTheFileThatWouldBeWritten, 1)
     assert_int_equal(vplImage_Encode(image, ".png", NULL, &bytes, &size), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "pixel (2, 0) channel 1"));
     vplImage_Destroy(image);
+}
+
+// Three names are in a row of 20 pixels, and half a row is below.
+TEST_ALONE(LegendsAreAsHighAsTheirRows)
+{
+    bool present[FAMILY_COUNT] = {false};
+    for (int count = 1; count <= FAMILY_COUNT; count++) {
+        present[count - 1] = true;
+        assert_int_equal(heightOfLegend(present), (count + 2) / 3 * 20 + 10);
+    }
+}
+
+TEST_ALONE(SettingsAreOfTheirSweepsOnly)
+{
+    const Setting none = {.sweeps = {false}};
+    assert_false(isOfSweep(&none, "frontier"));
+    assert_false(isOfSweep(&none, "path"));
 }
