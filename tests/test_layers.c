@@ -245,7 +245,6 @@ TEST(SurfacesAreThoseThatRaysHit, 2)
 TEST(DepthIsThatOfShowDepth, 2)
 {
     static const Words ways[] = {{{"method", "direct", "antialias", "8"}},
-                                 {{"method", "direct", "supersample", "2"}},
                                  {{"method", "direct", "supersample", "3"}},
                                  {{"method", "path", "spp", "1"}}};
     const Words show = {{"method", "direct", "show", "depth"}};
