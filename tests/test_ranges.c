@@ -281,3 +281,25 @@ TEST(MoreTrianglesThanAreAllowedAreRefused, 1)
     assert_null(g);
     vplScene_Destroy(scene);
 }
+
+// The message names the index, and the vertex that is not there.
+TEST(IndicesBeyondTheVerticesAreRefused, 1)
+{
+    const vplVec3 corners[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    vplScene* scene = sceneOf(context, 0.5f);
+    for (int wrong = 0; wrong < 6; wrong++) {
+        uint32_t indices[6] = {0, 1, 2, 0, 2, 1};
+        char wanted[80];
+        vplMeshDef mesh = vplDefaultMeshDef();
+        indices[wrong] = wrong % 2 ? 3 : UINT32_MAX;
+        mesh.positions = corners;
+        mesh.indices = indices;
+        mesh.vertexCount = 3;
+        mesh.triangleCount = 2;
+        snprintf(wanted, sizeof wanted, "indices[%d] is %u, must be less than the vertexCount 3", wrong,
+                 indices[wrong]);
+        assert_int_equal(vplScene_AddMesh(scene, &mesh, NULL), VPL_INVALID_ARGUMENT);
+        assert_non_null(strstr(takeMessage(), wanted));
+    }
+    vplScene_Destroy(scene);
+}

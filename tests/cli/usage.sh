@@ -32,6 +32,9 @@ wrong "both the picture and the statistics" render "$room" -o "$png" --stats "$p
 wrong "unknown option --particels, did you mean --particles?" render "$room" -o "$png" --particels 5
 wrong "unknown option --thread, did you mean --threads?" lights "$room" --thread=2
 wrong "unknown option --reflect, did you mean --reflectivity?" lights "$room" --reflect 0.5
+wrong "unknown option --parrticcles, did you mean --particles?" render "$room" -o "$png" --parrticcles 5
+wrong "unknown option --prtcls" render "$room" -o "$png" --prtcls 5
+check ThreeMistakesAreTooMany sh -c "! grep -q 'did you mean' '$scratch/stderr'"
 wrong "unknown option --xyzzy" render "$room" -o "$png" --xyzzy
 wrong "unknown option -x" info "$room" -x
 wrong "lights has no option --stats" lights "$room" --stats x.json
