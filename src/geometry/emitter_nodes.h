@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The nodes of an emitter tree and one step down the tree: the arithmetic of single points and of kernels that choose for
-// sixteen points side by side. It has no branches, so that loops over points vectorise.
+// sixteen points side by side. Loops over points vectorise, because nothing branches there.
 // Based on: see emitter_tree.c.
 #ifndef VPL_GEOMETRY_EMITTER_NODES_H
 #define VPL_GEOMETRY_EMITTER_NODES_H
@@ -57,7 +57,8 @@ VPL_STEP double vplBlendCosines(double largest, double middle)
     return 0.125 * largest + 0.875 * (middle > 0 ? middle : 0);
 }
 
-// The cosine of the emission, of light that leaves along (x, y, z); 0 where no source of the node sends light there.
+// The cosine of the light that leaves a source towards the point: `off` is that between the node's axis and the way to the point, and the box is
+// seen under an angle. 1 where sources send light everywhere, 0 where none of the node sends light to the point.
 VPL_STEP double vplEmitterNode_Sent(const vplEmitterNode* node, double off, double cosBox, double sinBox)
 {
     const double reach = node->cosReach;
@@ -70,7 +71,8 @@ VPL_STEP double vplEmitterNode_Sent(const vplEmitterNode* node, double off, doub
 }
 
 // About the strength that reaches the point, over the squared distance; 0 only where no source of the node lights it.
-// Inside of the sphere nothing is known of directions. `cones`: whether the node may send light in some directions only.
+// Inside of the sphere nothing is known of directions. `cones`: whether some sources send light in some directions only; `branches`: whether
+// to return early, which loops over points cannot.
 VPL_STEP double vplEmitterNode_Importance(const vplEmitterNode* node, vplVec3 p, vplVec3 n, bool cones,
                                           bool branches)
 {
