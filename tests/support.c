@@ -254,6 +254,15 @@ double uniformAt(uint64_t seed, uint64_t index)
     return (double)vplRandomAt(seed, 77, index).v[0] * 0x1p-32;
 }
 
+bool noteProgress(void* user, double fraction)
+{
+    Progressed* p = user;
+    assert_true(fraction >= p->last && fraction <= 1);
+    p->calls++;
+    p->last = fraction;
+    return true;
+}
+
 vplScene* openScene(vplContext* context, const char* path)
 {
     vplScene* scene = NULL;

@@ -104,6 +104,15 @@ void assertNear(double value, double wanted, double tolerance, const char* what,
 // Returns a counter-based uniform random number in [0, 1) for seeded cases, the same on every machine.
 double uniformAt(uint64_t seed, uint64_t index);
 
+// What a vplProgressFcn has seen.
+typedef struct Progressed {
+    int calls;
+    double last;
+} Progressed;
+
+// A vplProgressFcn with a Progressed as its user: never cancels, and requires fractions of at most 1 that never shrink.
+bool noteProgress(void* user, double fraction);
+
 // Loads the benchmark room (tests/data/room.json), or the same with a front wall and the camera inside.
 vplScene* loadScene(vplContext* context, const char* name);
 

@@ -16,20 +16,6 @@ static bool stopOnce(void* user, double fraction)
     return ++stop->calls != stop->at;
 }
 
-typedef struct Progress {
-    int calls;
-    double last;
-} Progress;
-
-static bool noteProgress(void* user, double fraction)
-{
-    Progress* p = user;
-    assert_true(fraction >= p->last);
-    p->calls++;
-    p->last = fraction;
-    return true;
-}
-
 static void doNothing(void* data, int index, int worker)
 {
     (void)data;
@@ -40,7 +26,7 @@ static void doNothing(void* data, int index, int worker)
 TEST_ALONE(ProgressEndsWithItsRange)
 {
     vplContext* context = openTestContext(1);
-    Progress p = {0, 0};
+    Progressed p = {0, 0};
     assert_int_equal(
         vplParallelForProgress(context, 10, doNothing, NULL, (vplProgressRange){noteProgress, &p, 0.25, 0.5}),
         VPL_SUCCESS);

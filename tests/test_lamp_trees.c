@@ -7,7 +7,7 @@
 #include "path_scenes.h"
 #include "render/plan.h"
 #include "render/runner.h"
-#include "shading/kernels.h"
+#include "shading/shading.h"
 
 enum { LAMPS = 100, CLOSE = 1024, SAMPLES = 64 };
 
@@ -34,14 +34,14 @@ static vplScene* hall(vplContext* context, int quads, int points)
     return scene;
 }
 
-// Blocks of points, of which every third is not covered, with every instruction set.
+// Blocks of points, every third of which is on no triangle, with every instruction set.
 static void checkBlocks(const vplEmitterTree* tree)
 {
     enum { BLOCKS = 60 };
     for (uint64_t i = 0; i < BLOCKS * VPL_ISA_COUNT; i++) {
         const vplIsa isa = (vplIsa)(i % VPL_ISA_COUNT);
         vplSurface s;
-        int32_t covered[VPL_LANES];
+        vplPoints points = {.surface = &s, .plane = &s};
         vplVec3 p[VPL_LANES], n[VPL_LANES];
         double choice[VPL_LANES];
         vplChosenSource chosen[VPL_LANES];
@@ -50,16 +50,15 @@ static void checkBlocks(const vplEmitterTree* tree)
             n[l] = vplNormalize(pointAt(30000 + k, 1));
             s.px[l] = p[l].x, s.py[l] = p[l].y, s.pz[l] = p[l].z;
             s.nx[l] = n[l].x, s.ny[l] = n[l].y, s.nz[l] = n[l].z;
-            covered[l] = k % 3 > 0;
+            points.triangle[l] = k % 3 > 0 ? 0 : -1;
             choice[l] = uniformAt(72, k);
         }
         if (vplHasIsa(isa)) {
-            vplGetShadingKernels(isa, VPL_LIGHTING_PHYSICAL)
-                ->chooseSources(tree, &s, covered, choice, chosen);
+            vplGetShadingKernels(isa, VPL_LIGHTING_PHYSICAL)->chooseSources(tree, &points, choice, chosen);
         }
         for (int l = 0; l < VPL_LANES && vplHasIsa(isa); l++) {
             const vplChosenSource alone = vplEmitterTree_Choose(tree, p[l], n[l], choice[l]);
-            assert_int_equal(chosen[l].source, covered[l] ? alone.source : -1);
+            assert_int_equal(chosen[l].source, points.triangle[l] == 0 ? alone.source : -1);
             if (chosen[l].source >= 0) {
                 assert_memory_equal(&chosen[l].probability, &alone.probability, sizeof alone.probability);
                 assert_memory_equal(&chosen[l].rest, &alone.rest, sizeof alone.rest);

@@ -13,7 +13,7 @@
 // Bounds of cosines are wider by this, because the directions of sources and normals are rounded.
 #define VPL_CONE_MARGIN 1e-6
 
-// Nodes of n sources are 2n - 1: the node, those of its left half, those of its right half.
+// A subtree of n sources has 2n - 1 consecutive nodes: its root, the nodes of its left half, those of its right half.
 typedef struct vplEmitterNode {
     float centre[3], radius; // of a sphere around the box
     float axis[3];
@@ -32,11 +32,12 @@ struct vplEmitterTree {
 
 #define VPL_STEP static inline __attribute__((always_inline))
 
-// Cosine and sine of max(a - b, 0), of two angles up to half a turn.
+// An angle of up to half a turn.
 typedef struct vplAngle {
     double cosine, sine;
 } vplAngle;
 
+// max(a - b, 0), where the angle b has this cosine and sine.
 VPL_STEP vplAngle vplAngle_Subtract(vplAngle a, double cosine, double sine)
 {
     const bool none = a.cosine > cosine;
@@ -57,8 +58,9 @@ VPL_STEP double vplBlendCosines(double largest, double middle)
     return 0.125 * largest + 0.875 * (middle > 0 ? middle : 0);
 }
 
-// The cosine of the light that leaves a source towards the point: `off` is that between the node's axis and the way to the point, and the box is
-// seen under an angle. 1 where sources send light everywhere, 0 where none of the node sends light to the point.
+// The factor of emission towards the point: about the cosine of the angle between the axis of a source and the way to the point. 1 where sources
+// emit in all directions, 0 if no source of the node emits towards the point. `off`: the cosine of that angle for the node's axis and centre;
+// cosBox, sinBox: of half the angle that the node's sphere covers, seen from the point.
 VPL_STEP double vplEmitterNode_Sent(const vplEmitterNode* node, double off, double cosBox, double sinBox)
 {
     const double reach = node->cosReach;
@@ -95,7 +97,7 @@ VPL_STEP double vplEmitterNode_Importance(const vplEmitterNode* node, vplVec3 p,
     return d2 <= r2 ? inside : received <= 0 ? 0 : outside;
 }
 
-// The share of the left half; negative where neither half lights the point.
+// The probability of the left half; negative if neither half lights the point.
 VPL_STEP double vplEmitterTree_LeftShare(const vplEmitterTree* t, int leftNode, int rightNode,
                                          vplVec3 position, vplVec3 normal, bool cones, bool branches)
 {

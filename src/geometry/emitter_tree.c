@@ -267,14 +267,17 @@ void vplEmitterTree_ForgetPlaces(vplEmitterTree* t)
 
 // ---- choosing
 
+VPL_STEP double leftShare(const vplEmitterTree* t, int node, int left, vplVec3 position, vplVec3 normal)
+{
+    return vplEmitterTree_LeftShare(t, node + 1, node + 2 * left, position, normal, t->cones, true);
+}
+
 vplChosenSource vplEmitterTree_Choose(const vplEmitterTree* t, vplVec3 position, vplVec3 normal,
                                       double choice)
 {
     vplDescent d = vplDescent_Start(choice);
     for (int left; (left = t->nodes[d.node].left) > 0 && !d.ended;) {
-        d = vplDescent_Step(
-            d, left,
-            vplEmitterTree_LeftShare(t, d.node + 1, d.node + 2 * left, position, normal, t->cones, true));
+        d = vplDescent_Step(d, left, leftShare(t, d.node, left, position, normal));
     }
     return (vplChosenSource){d.ended ? -1 : t->sources[d.first], d.probability, d.rest};
 }
@@ -285,8 +288,7 @@ double vplEmitterTree_Probability(const vplEmitterTree* t, vplVec3 position, vpl
     double probability = 1;
     for (int node = 0, first = 0; t->nodes[node].left > 0 && probability > 0;) {
         const int left = t->nodes[node].left;
-        const double share =
-            vplEmitterTree_LeftShare(t, node + 1, node + 2 * left, position, normal, t->cones, true);
+        const double share = leftShare(t, node, left, position, normal);
         const bool goesLeft = position0 < first + left;
         probability *= share < 0 ? 0 : goesLeft ? share : 1 - share;
         first += goesLeft ? 0 : left;

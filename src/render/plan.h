@@ -49,8 +49,8 @@ static inline double vplPlan_PointSets(const vplPlan* plan)
 // 1,000 takes five times as long as that, and the choices have a relmse of 0.011.
 enum { VPL_MOST_EMITTERS = 1024, VPL_EMITTERS_PER_POINT = 64 };
 
-// A tree's choice of one of `count` emitters, with its shadow ray, takes as long as so many shadow rays to emitters that light all pixels, because
-// the rays of neighbouring pixels to one emitter are coherent. Measured: 3 with 100 emitters, 4.4 to 4.9 with 1,000, 10 with 20,000.
+// The time to choose one of `count` emitters from a tree and to cast its shadow ray, in shadow rays to an emitter that lights all pixels. Those
+// take less time, because the rays of neighbouring pixels are coherent. Measured: 3 with 100 emitters, 4.4 to 4.9 with 1,000, 10 with 20,000.
 double vplChoiceWork(double count);
 
 // Where there are more emitters, so many of them, chosen by strength, have reflective maps and stand for all: the texels of

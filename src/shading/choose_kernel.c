@@ -1,56 +1,59 @@
 // SPDX-License-Identifier: MIT
-// Choices from an emitter tree for sixteen points side by side.
+// Chooses sources from an emitter tree for sixteen points side by side.
 #include "geometry/emitter_nodes.h"
 #include "math/vec.h"
 #include "shading/shading.h"
 
-// The halves of each point's node, and the share of the left one. Points that have ended compare a node with itself.
-typedef struct Halves {
-    int32_t left[VPL_LANES], right[VPL_LANES]; // nodes
+// The halves of each point's node, and the probability of the left one.
+typedef struct Steps {
+    int32_t left
+        [VPL_LANES]; // sources in the left half; 0: the point goes no further, and compares its node with itself
+    int32_t leftNode[VPL_LANES], rightNode[VPL_LANES];
     double share[VPL_LANES];
-} Halves;
+} Steps;
 
-static inline __attribute__((always_inline)) void
-findShares(const vplEmitterTree* t, const vplSurface* restrict s, bool cones, Halves* restrict h)
+VPL_STEP void findShares(const vplEmitterTree* t, const vplSurface* restrict s, bool cones,
+                         Steps* restrict at)
 {
     for (int l = 0; l < VPL_LANES; l++) {
-        h->share[l] =
-            vplEmitterTree_LeftShare(t, h->left[l], h->right[l], vplVec(s->px[l], s->py[l], s->pz[l]),
-                                     vplVec(s->nx[l], s->ny[l], s->nz[l]), cones, false);
+        at->share[l] = vplEmitterTree_LeftShare(t, at->leftNode[l], at->rightNode[l],
+                                                vplVec(s->px[l], s->py[l], s->pz[l]),
+                                                vplVec(s->nx[l], s->ny[l], s->nz[l]), cones, false);
     }
 }
 
-// Finds the halves of all nodes. Returns whether any point goes on.
-static bool findHalves(const vplEmitterTree* t, const vplDescent d[VPL_LANES], Halves* h)
+// Looks up the halves of each point's node. Returns whether any point goes further.
+static bool findHalves(const vplEmitterTree* t, const vplDescent d[VPL_LANES], Steps* at)
 {
     int all = 0;
     for (int l = 0; l < VPL_LANES; l++) {
         const int left = d[l].ended ? 0 : t->nodes[d[l].node].left;
-        h->left[l] = d[l].node + (left > 0);
-        h->right[l] = d[l].node + 2 * left;
+        at->left[l] = left;
+        at->leftNode[l] = d[l].node + (left > 0);
+        at->rightNode[l] = d[l].node + 2 * left;
         all |= left;
     }
     return all > 0;
 }
 
-void VPL_KERNEL(vplChooseSources)(const vplEmitterTree* t, const vplSurface* s, const int32_t* covered,
-                                  const double* choice, vplChosenSource* out)
+void VPL_KERNEL(vplChooseSources)(const vplEmitterTree* t, const vplPoints* points, const double* choice,
+                                  vplChosenSource* out)
 {
     vplDescent d[VPL_LANES];
-    Halves h;
+    Steps at;
     for (int l = 0; l < VPL_LANES; l++) {
         d[l] = vplDescent_Start(choice[l]);
-        d[l].ended = !covered[l];
+        d[l].ended = points->triangle[l] < 0;
     }
-    while (findHalves(t, d, &h)) {
+    while (findHalves(t, d, &at)) {
         if (t->cones) {
-            findShares(t, s, true, &h);
+            findShares(t, points->surface, true, &at);
         } else {
-            findShares(t, s, false, &h);
+            findShares(t, points->surface, false, &at);
         }
         for (int l = 0; l < VPL_LANES; l++) {
-            if (h.right[l] > h.left[l]) {
-                d[l] = vplDescent_Step(d[l], (h.right[l] - d[l].node) / 2, h.share[l]);
+            if (at.left[l] > 0) {
+                d[l] = vplDescent_Step(d[l], at.left[l], at.share[l]);
             }
         }
     }

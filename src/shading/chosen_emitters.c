@@ -56,7 +56,7 @@ static void lightFromEmitter(const vplReceiver* r, const vplDirectLight* direct,
 // Squared distances count as at least this share of the triangle's area: nearer, the point's density would blow the light up.
 static const double LEAST_SQUARE = 0x1p-10;
 
-// Light of a point on the triangle. The amount is the irradiance by a unit of radiance over the density of the point.
+// Samples a point on the triangle. The amount is the irradiance by a unit of radiance, over the density of the sample.
 static void lightFromTriangle(const vplReceiver* r, const vplDirectLight* direct, int l, vplChosenSource c,
                               double across, Choice* out)
 {
@@ -103,10 +103,6 @@ static void addChoices(const vplReceiver* r, const vplDirectLight* direct, const
     double start[VPL_LANES], across[VPL_LANES];
     hashPositions(r->points, CHOICE_SEED, start);
     hashPositions(r->points, ACROSS_SEED, across);
-    int32_t covered[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        covered[l] = r->points->triangle[l] >= 0;
-    }
     for (int k = 0; k < choosing->count; k++) {
         Choice c = {.amount = {0}};
         double numbers[VPL_LANES];
@@ -114,7 +110,7 @@ static void addChoices(const vplReceiver* r, const vplDirectLight* direct, const
         for (int l = 0; l < VPL_LANES; l++) {
             numbers[l] = (k + start[l]) / choosing->count;
         }
-        r->shading->kernels.chooseSources(choosing->tree, r->points->surface, covered, numbers, chosen);
+        r->shading->kernels.chooseSources(choosing->tree, r->points, numbers, chosen);
         for (int l = 0; l < VPL_LANES; l++) {
             const double along = across[l] + k * GOLDEN;
             if (chosen[l].source >= 0) {

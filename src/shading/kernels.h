@@ -49,10 +49,9 @@ typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vp
                                const struct vplPoints* points, float irradiance[restrict 3][VPL_LANES],
                                int64_t* rays);
 
-// vplEmitterTree_Choose for each point that is covered, by its number in [0, 1); -1 for the others.
-typedef void vplChooseSourcesFcn(const vplEmitterTree* tree, const vplSurface* surface,
-                                 const int32_t covered[VPL_LANES], const double choice[VPL_LANES],
-                                 vplChosenSource out[VPL_LANES]);
+// vplEmitterTree_Choose for each point on a triangle, by its number in [0, 1); the source is -1 for the others.
+typedef void vplChooseSourcesFcn(const vplEmitterTree* tree, const struct vplPoints* points,
+                                 const double choice[VPL_LANES], vplChosenSource out[VPL_LANES]);
 
 // The kernels of one vplLighting: X(type, field, function). Tile and task kernels get the vplShading as data.
 #define VPL_SHADING_KERNELS(X, Lighting)                                                                     \
