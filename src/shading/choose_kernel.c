@@ -4,10 +4,9 @@
 #include "math/vec.h"
 #include "shading/shading.h"
 
-// The halves of each point's node, and the probability of the left one.
+// The halves of each point's node, and the probability of the left one. A point that goes no further compares its node with itself.
 typedef struct Steps {
-    int32_t left
-        [VPL_LANES]; // sources in the left half; 0: the point goes no further, and compares its node with itself
+    int32_t left[VPL_LANES]; // sources in the left half; 0: the point goes no further
     int32_t leftNode[VPL_LANES], rightNode[VPL_LANES];
     double share[VPL_LANES];
 } Steps;
