@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of the rasterizer's properties that hold for any triangles.
+#include "failing.h"
 #include "raster_support.h"
 
 #include "base/hash.h"
@@ -191,6 +192,28 @@ TEST(CullingKeepsOneSide, 1)
         freeCanvas(&c);
     }
     assert_true(fragments[0] == fragments[1] + fragments[2]);
+}
+
+// One triangle faces the eye, one faces away, one lies beside the picture, one has no area. The memory around what is counted holds junk.
+TEST_ALONE(OnlyTrianglesOnScreenAreBinned)
+{
+    Failing junk = {.failAt = -1};
+    vplContext* context = openFailing(&junk);
+    static const int at[12][2] = {{0, 0},    {0, 4096},    {2048, 0}, {4096, 4096}, {2048, 4096}, {4096, 0},
+                                  {8192, 0}, {8192, 4096}, {9216, 0}, {0, 0},       {0, 4096},    {0, 2048}};
+    ClipVertex v[12];
+    for (int i = 0; i < 12; i++) {
+        v[i] = fixedVertex(at[i][0], at[i][1], 0.5f, 16, 16);
+    }
+    Canvas c = makeCanvas(16, 16, 0);
+    const vplPipeline p = showPipeline(v);
+    const vplRasterStats stats = drawList(context, &c, &p, NULL, 12, 4);
+    assert_int_equal(stats.drawCalls, 1);
+    assert_int_equal(stats.trianglesIn, 4);
+    assert_int_equal(stats.trianglesBinned, 2);
+    freeCanvas(&c);
+    vplContext_Destroy(context);
+    assert_int_equal(junk.held, 0);
 }
 
 // Draws two overlapping rectangles with each depth compare mode, with depth writes on and off.

@@ -92,6 +92,51 @@ TEST(MeasuringEndsInTimeAndHoldsNothing, 2, SLOW)
     assert_int_equal(vplContext_GetBytes(context), before);
 }
 
+// Bytes, and allocations after which each load has been rendered once.
+enum { LITTLE_MEMORY = 24 << 20, ONE_ROUND = 1600 };
+
+typedef struct Held {
+    size_t now, most;
+    int allocations;
+} Held;
+
+// An allocator that has no more memory than that, and none after one round.
+static void* limitedAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
+{
+    Held* h = user;
+    const size_t held = h->now - oldSize + newSize;
+    h->most = held > h->most ? held : h->most;
+    if (newSize == 0) {
+        h->now = held;
+        free(memory);
+        return NULL;
+    }
+    if (held > LITTLE_MEMORY || ++h->allocations > ONE_ROUND) {
+        return NULL;
+    }
+    h->now = held;
+    return realloc(memory, newSize);
+}
+
+// The pictures are small. One of the usual size takes 40 MB with all that shading holds, and longer than all the time.
+TEST_ALONE(MeasuringTakesLittleMemory)
+{
+    Held held = {0};
+    vplContextDef def = vplDefaultContextDef();
+    vplContext* context;
+    vplSpeeds speeds;
+    def.alloc = limitedAlloc;
+    def.allocUser = &held;
+    def.workerCount = 1;
+    assert_int_equal(vplContext_Create(&def, &context), VPL_SUCCESS);
+    const vplResult result = vplSpeeds_Measure(context, &speeds);
+    assert_in_range(held.most, 1, LITTLE_MEMORY);
+    // On a slow machine the time is up before all loads are rendered.
+    assert_int_equal(result, held.allocations > ONE_ROUND ? VPL_OUT_OF_MEMORY : VPL_SUCCESS);
+    vplContext_Destroy(context);
+    assert_int_equal(held.now, 0);
+}
+
 TEST_ALONE(MeasuringWithoutMemoryFailsCleanly)
 {
     static const long points[] = {1, 2, 5, 9, 20, 50, 100, 150};

@@ -191,7 +191,7 @@ typedef struct vplRasterStats {
     int64_t drawCalls;        // draws recorded
     int64_t fragments;        // fragments that passed all tests
     int64_t trianglesIn;      // triangles of the meshes whose vertices were shaded
-    int64_t trianglesBinned;  // left after culling and clipping
+    int64_t trianglesBinned;  // left after clipping, whichever way they face, where a pixel may be
     double vertexMs, tilesMs; // time of the vertex stage (with clipping and binning) and of the tiles
 } vplRasterStats;
 
