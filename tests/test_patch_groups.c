@@ -180,6 +180,55 @@ TEST(PatchesThatLightReachesAreCounted, 2, SLOW)
     vplScene_Destroy(balls);
 }
 
+// A closed cube whose floor, ceiling and walls are two triangles each, and across it, at x = 0, a thin wall of small triangles. They
+// are grouped, so that they do not cut what they stand on.
+static vplGeometry* halvedCube(vplContext* context)
+{
+    vplScene* scene = closedCubeScene(context, 0.5f, 0);
+    vplMat4 thin = {{0}};
+    Shape wall = gridBox(15);
+    thin.m[0] = 0.01f;
+    thin.m[5] = thin.m[10] = 1.05f;
+    thin.m[15] = 1;
+    addShape(scene, &wall, false, &thin);
+    freeShape(&wall);
+    return buildGeometry(scene);
+}
+
+// Triangles on both sides of the wall are lit up to it, as seen from a corner in the lit room, in whichever room their first patch lies.
+TEST(TrianglesOnBothSidesOfAWallNameALitCorner, 2)
+{
+    vplGeometry* g = halvedCube(context);
+    vplPatches* p = groupsOf(g, 500, 0, true);
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplPatchSidesDef def = vplDefaultPatchSidesDef();
+    vplPatchSides* s;
+    const vplVec3 eye = vplVec(-0.5f, 0.2f, 0.1f); // in the dark
+    emitter.position = vplVec(0.5f, 0.3f, -0.2f);
+    def.emitters = &emitter;
+    def.viewpoints = &eye;
+    def.emitterCount = def.viewpointCount = 1;
+    assert_int_equal(vplPatchSides_Create(p, &def, &s), VPL_SUCCESS);
+    assert_non_null(s->dark);
+    int inDark = 0, onBoth = 0;
+    for (int t = 0; t < 12; t++) { // of the cube
+        const vplTriangleCorners c = vplCornersOf(p->positions, p->nodes[t].corners);
+        const int code = s->dark[t] & 15; // of its front
+        const bool lit[3] = {c.corner[0].x > 0, c.corner[1].x > 0, c.corner[2].x > 0};
+        if (lit[0] || lit[1] || lit[2]) {
+            onBoth += code > 0;
+            assert_true(code == 0 ? lit[0] && lit[1] && lit[2] : code >= 2 && lit[code - 2]);
+        } else {
+            inDark++;
+            assert_int_equal(code, 1);
+        }
+    }
+    assert_true(inDark == 2 && onBoth == 8);
+    vplPatchSides_Destroy(s);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+}
+
 // Groups for a length T fit into boxes of that diagonal, and their normals are near the mean. Emitters have their own.
 TEST(GroupsAreSmallAndFaceOneWay, 1)
 {

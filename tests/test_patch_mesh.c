@@ -90,24 +90,31 @@ static uint32_t positionAt(const vplPatches* patches, vplVec3 p)
     return 0;
 }
 
-// Edges of any length along each axis, between a large triangle and three small ones: the vertex nearest to the middle is found.
+// A large triangle and three small ones meet at an edge along an axis, which lies `off` from the axis.
+static Shape trianglesAtEdge(int axis, float off, vplVec3 p[6])
+{
+    static const vplVec3 along[6] = {{0, 0, 0}, {5, 0, 0}, {0, 3, 0}, {1, 0, 0}, {3, 0, 0}, {2, -1, 0}};
+    static const int corners[4][3] = {{0, 1, 2}, {5, 3, 0}, {5, 4, 3}, {5, 1, 4}};
+    Shape shape = {0};
+    for (int i = 0; i < 6; i++) {
+        const vplVec3 q = vplVec(along[i].x, along[i].y + off, along[i].z + off);
+        p[i] = axis == 0 ? q : axis == 1 ? vplVec(q.z, q.x, q.y) : vplVec(q.y, q.z, q.x);
+    }
+    for (int i = 0; i < 4; i++) {
+        addTriangle(&shape, p[corners[i][0]], p[corners[i][1]], p[corners[i][2]]);
+    }
+    return shape;
+}
+
+// The vertex nearest to the middle of an edge is found, on edges of any length along each axis. Also if the edge lies just beside a
+// boundary of the cells in which vertices are searched for.
 TEST(VerticesAreFoundOnEdgesOfAnyDirection, 1)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        vplVec3 p[7] = {{0, 0, 0}, {5, 0, 0}, {0, 3, 0}, {1, 0, 0}, {3, 0, 0}, {2, -1, 0}};
-        const int corners[4][3] = {{0, 1, 2}, {5, 3, 0}, {5, 4, 3}, {5, 1, 4}};
-        vplScene* scene = sceneOf(context, 0.5f);
-        Shape shape = {0};
-        for (int i = 0; i < 6; i++) {
-            const vplVec3 q = p[i];
-            p[i] = axis == 0 ? q : axis == 1 ? vplVec(q.z, q.x, q.y) : vplVec(q.y, q.z, q.x);
-        }
-        for (int i = 0; i < 4; i++) {
-            addTriangle(&shape, p[corners[i][0]], p[corners[i][1]], p[corners[i][2]]);
-        }
-        addShape(scene, &shape, false, NULL);
-        freeShape(&shape);
-        vplGeometry* g = buildGeometry(scene);
+    float offs[3] = {0};
+    for (int k = 0; k < 9; k++) {
+        vplVec3 p[6];
+        Shape shape = trianglesAtEdge(k % 3, offs[k / 3], p);
+        vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
         vplPatches* patches = openPatches(g, 100, 0);
         vplArena* scratch = vplArena_Create(context);
         vplEdgeVertices edges;
@@ -116,9 +123,12 @@ TEST(VerticesAreFoundOnEdgesOfAnyDirection, 1)
                          (int)positionAt(patches, p[4])); // 3 of 5 is nearer to the middle than 1
         assert_int_equal(vplEdgeVertices_Find(&edges, positionAt(patches, p[0]), positionAt(patches, p[2])),
                          -1);
+        offs[1] = (float)(edges.cells.size - 0.5 * edges.tolerance);
+        offs[2] = (float)(edges.cells.size + 0.5 * edges.tolerance);
         vplArena_Destroy(scratch);
         vplPatches_Destroy(patches);
         vplGeometry_Destroy(g);
+        freeShape(&shape);
     }
 }
 

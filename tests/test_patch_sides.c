@@ -122,6 +122,32 @@ TEST_ALONE(OneTriangleHasTheSideThatFacesTheEmitter)
     }
 }
 
+// Nothing reflects light to the floor, and the particles are fewer than its patches: each must find the lamp or the sun itself.
+TEST_ALONE(EachPatchOfAFloorFindsItsLightSource)
+{
+    static const vplEmitterType types[] = {VPL_EMITTER_POINT, VPL_EMITTER_SPOT, VPL_EMITTER_DIRECTIONAL};
+    Shape shape = {0};
+    addFloor(&shape);
+    Case c = openCase(&shape, 0.1f, NULL);
+    assert_true(c.patches->patchCount > 4096);
+    for (int i = 0; i < 3; i++) {
+        vplEmitterDef emitter = vplDefaultEmitterDef();
+        vplPatchSidesDef def = vplDefaultPatchSidesDef();
+        vplPatchSides* s;
+        emitter.type = types[i];
+        emitter.position = vplVec(0.3f, 3, 0.1f);
+        emitter.direction = vplVec(0, -1, 0);
+        emitter.innerAngle = emitter.outerAngle = 0.4 * VPL_PI;
+        def.emitters = &emitter;
+        def.emitterCount = 1;
+        assert_int_equal(vplPatchSides_Create(c.patches, &def, &s), VPL_SUCCESS);
+        assertAll(s, 0, 2, false);
+        assertNone(s, 0, 2, true);
+        vplPatchSides_Destroy(s);
+    }
+    closeCase(&c);
+}
+
 TEST(AnAreaLightAloneIsASide, 1)
 {
     Shape shape = {0};

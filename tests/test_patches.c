@@ -443,6 +443,25 @@ TEST(ACountObeysTheRounds, 1)
     vplGeometry_Destroy(lab);
 }
 
+// Triangle 0 has a longest edge of exactly T and stays whole; triangle 1 has one that is longer by a last bit, and far less area. T may be
+// in any unit.
+TEST(EdgesAreComparedWithTToTheLastBit, 1)
+{
+    for (float size = 0x1p-10f; size < 2000; size *= 2) {
+        const float longer = nextafterf(size, INFINITY);
+        Shape shape = {0};
+        addTriangle(&shape, vplVec(0, 0, 0), vplVec(size, 0, 0), vplVec(0.5f * size, 0.75f * size, 0));
+        addTriangle(&shape, vplVec(0, 0, 1), vplVec(longer, 0, 1), vplVec(0.5f * size, 0.125f * size, 1));
+        vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
+        vplPatches* p = openPatches(g, size, VPL_MAX_PATCH_ROUNDS);
+        assert_int_equal(p->patchCount, 3);
+        assert_true(p->nodes[0].children < 0 && p->nodes[1].children >= 0);
+        vplPatches_Destroy(p);
+        vplGeometry_Destroy(g);
+        freeShape(&shape);
+    }
+}
+
 // ---- refining
 
 TEST(RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes, 1)
