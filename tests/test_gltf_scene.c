@@ -217,6 +217,28 @@ TEST_ALONE(MapsOfMetalnessAndEmissionAreAveraged)
     closeDesk(&d);
 }
 
+// A map that cannot be read changes nothing, as one of white texels would.
+TEST_ALONE(FactorsStayWhereTheirMapCannotBeRead)
+{
+    static const char MATERIAL[] =
+        "{\"emissiveFactor\":[4,2,0],\"emissiveTexture\":{\"index\":0},\"pbrMetallicRoughness\":{"
+        "\"metallicFactor\":0.4,\"metallicRoughnessTexture\":{\"index\":0}}}";
+    static const char MISSING[] = ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"none.png\"}]";
+    Blob noise = {.size = 0};
+    addBytes(&noise, "this is no picture", 18);
+    Desk d;
+    openDesk(&d);
+    for (int missing = 0; missing < 2; missing++) {
+        vplScene* scene =
+            missing ? loadMaterial(&d, NULL, MATERIAL, MISSING) : loadMaterial(&d, &noise, MATERIAL, TEXTURE);
+        const vplMaterialDef* m = vplScene_GetMaterial(scene, 0);
+        assertColour(m->emission, 4, 2, 0);
+        assertAround((double)m->diffuse.r, 0.8, 1e-6); // of metalness 0.4
+        vplScene_Destroy(scene);
+    }
+    closeDesk(&d);
+}
+
 // ---- cameras and lights
 
 static vplScene* loadNodes(Desk* d, const Blob* blob, const char* nodes, const char* members)

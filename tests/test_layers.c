@@ -316,6 +316,27 @@ TEST(OnlyAlbedoAndNormalsAreMeansOverAPixel, 2)
     vplScene_Destroy(scene);
 }
 
+// A normal has length 1. Where the two samples of a pixel show surfaces that face different ways, their mean is shorter.
+TEST(TwoSamplesOfAPixelAreAMeanToo, 2)
+{
+    static const Words ways[] = {{{"method", "direct", "antialias", "2"}},
+                                 {{"method", "direct", "supersample", "2"}}};
+    vplScene* scene = openScene(context, ROOM);
+    for (size_t way = 0; way < sizeof ways / sizeof *ways; way++) {
+        vplLayers* layers = layersOf(scene, &ways[way], "normal", NULL);
+        const float* n = layer(layers, "normal")->pixels;
+        int mixed = 0;
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i += 3) {
+            const float length = vplLength(vplVec(n[i], n[i + 1], n[i + 2]));
+            assert_true(length < 1 + 1e-6f);
+            mixed += length > 0 && length < 0.95f;
+        }
+        assert_true(mixed > 50);
+        vplLayers_Destroy(layers);
+    }
+    vplScene_Destroy(scene);
+}
+
 // ---- files
 
 static vplImage* randomImage(vplContext* context, uint64_t seed, bool whole)

@@ -313,6 +313,38 @@ TEST(DescriptionsAreCutLikeSnprintf, 1)
     vplScene_Destroy(scene);
 }
 
+// Smaller ones are described without. The numbers of lights double, so that the memory of some stage is just above the limit.
+TEST(StagesOf64KiBAreDescribedWithTheirMemory, 1)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    static const char* const counts[] = {"100", "200", "400", "800", "1600", "3200", "50000"};
+    int small = 0, large = 0;
+    for (int k = 0; k < 7; k++) {
+        const vplRenderOptions options = OPTIONS("method", "keller", "size", "16x9", "particles", counts[k]);
+        vplPlan* plan = planOf(scene, &options);
+        char* all = describe(plan);
+        const char* at = strstr(all, "stages, in this order");
+        for (int i = 0; i < plan->stageCount; i++) {
+            const double kib = (double)(plan->stages[i].bytes + plan->stages[i].scratch) / 1024;
+            double told = 0;
+            char unit[4] = "";
+            at = strstr(at, plan->stages[i].why);
+            assert_non_null(at);
+            at += strlen(plan->stages[i].why);
+            assert_int_equal(sscanf(at, "; %lf %3s", &told, unit), kib >= 64 ? 2 : 0);
+            told *= strcmp(unit, "MiB") == 0 ? 1024 : 1;
+            assertNear(told, kib >= 64 ? kib : 0, kib < 1024 ? 0.05 : 0.05 * 1024, plan->stages[i].name, k);
+            small += kib >= 32 && kib < 64;
+            large += kib >= 64 && kib < 128;
+        }
+        free(all);
+        vplPlan_Destroy(plan);
+    }
+    printf("# %d stages of 32 to 64 KiB, %d of 64 to 128 KiB\n", small, large);
+    assert_true(small > 0 && large > 0);
+    vplScene_Destroy(scene);
+}
+
 // ---- memory
 
 // Covers about twenty pictures: scene x method x size x threads.

@@ -220,6 +220,34 @@ TEST(EveryStageIsShown, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
+// Colours are those of the paper's figure 1. Marks are where the picture without them differs.
+TEST(FirstBounceLightsAreRedAndSecondBounceLightsBlue, 2)
+{
+    static const vplShow shows[2] = {VPL_SHOW_RSM_SAMPLES, VPL_SHOW_SECOND_BOUNCE};
+    vplScene* scene = spotRoom(context, 0.6f);
+    vplRenderOptions o = ssvpOptions(32);
+    o.maxBounces = 2;
+    o.shadow.rsmSize = 64;
+    o.ssvp.firstBounce = o.ssvp.secondBounce = 32;
+    vplImage* plain = renderScene(scene, &o, NULL);
+    for (int k = 0; k < 2; k++) {
+        o.output.show = shows[k];
+        vplImage* image = renderScene(scene, &o, NULL);
+        int marked = 0;
+        for (int i = 0; i < 3 * 32 * 32; i += 3) {
+            const float *p = &image->pixels[i], *q = &plain->pixels[i], own = p[k == 0 ? 0 : 2];
+            if (p[0] != q[0] || p[1] != q[1] || p[2] != q[2]) {
+                marked++;
+                assert_true(own > 3 * p[1] && own > 3 * p[k == 0 ? 2 : 0]);
+            }
+        }
+        assert_true(marked > 50);
+        vplImage_Destroy(image);
+    }
+    vplImage_Destroy(plain);
+    vplScene_Destroy(scene);
+}
+
 TEST_ALONE(BitsDependOnNeitherThreadsNorInstructions)
 {
     static const int workers[4] = {1, 2, 3, 7};

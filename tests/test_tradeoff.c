@@ -242,6 +242,39 @@ TEST_ALONE(ThePlotIsLogarithmicInBothDirections)
     assertNear(y[2] - y[1], y[1] - y[0], 0.2, "errors", 0);
 }
 
+// Counts the grid lines of the panel of energies, for two settings of other clamp distances.
+static int countEnergyLines(double low, double high)
+{
+    Run runs[2] = {{.stats = {.minDistance = 0.1}}, {.stats = {.minDistance = 0.2}}};
+    Tradeoff* t = measured(FAMILY_MAP, (const double[]){0.1, 0.2}, 2);
+    Text html = {0};
+    int lines = 0;
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < SWEEP_COUNT; k++) {
+            t->settings[i].sweeps[k] = strcmp(SWEEPS[k].name, "min-distance") == 0;
+        }
+        t->settings[i].energy = i == 0 ? low : high;
+        t->settings[i].runs = &runs[i];
+    }
+    addClamp(t, &html);
+    assert_non_null(html.bytes);
+    for (const char* at = strstr(html.bytes, ">energy: "); at != NULL;
+         at = strstr(at + 1, "class=\"grid\"")) {
+        lines++;
+    }
+    free(html.bytes);
+    return lines - 1;
+}
+
+// However little or much the energies differ.
+TEST_ALONE(ThePlotOfTheClampHasTwoToEightGridLines)
+{
+    static const double energies[][2] = {{0.99, 1}, {0.9, 0.97}, {0.6, 0.95}, {0.2, 1.1}, {1, 1.5}, {0.5, 4}};
+    for (size_t i = 0; i < sizeof energies / sizeof *energies; i++) {
+        assert_in_range(countEnergyLines(energies[i][0], energies[i][1]), 2, 8);
+    }
+}
+
 // Whole stops with which nine in ten of the lit values of the truth are at most 0.8.
 TEST(PicturesOfTheReportAreAsBrightAsTheTruthAllows, 1)
 {

@@ -24,7 +24,8 @@ vplResult vplPlan_Create(const vplScene* scene, const vplRenderOptions* options,
 // NULL is allowed.
 void vplPlan_Destroy(vplPlan* plan);
 
-// Writes the plan as text, a sentence per decision. Like snprintf, returns the length of the whole text.
+// Writes the plan as text, a sentence per decision; stages of 64 KiB and more are named with their memory. Like snprintf, returns the
+// length of the whole text.
 size_t vplPlan_Describe(const vplPlan* plan, char* text, size_t size);
 
 VPL_HEADER_END
