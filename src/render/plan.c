@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A plan from start to end: poses, decisions (decisions.c), what cannot be rendered, stages, and estimates.
+// A plan from start to end: poses, decisions (decisions.c and after it decisions_geometry.c), what cannot be rendered, stages, and estimates.
 #include "render/plan.h"
 
 #include "base/rng.h"

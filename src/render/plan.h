@@ -73,9 +73,6 @@ vplResult vplDecidePatches(vplRunner* runner, vplPlan* plan);
 // Resolves the pipeline and its square of pixels. The square of radiosity stays open until `gather` is known.
 void vplDecidePipeline(vplPlan* plan);
 
-// Resolves the number of bounces of SSVP, and counts their lights.
-void vplDecideBounces(const vplRunner* runner, vplPlan* plan);
-
 // Path tracing: decides how many vertices light paths have. May trace a few hundred paths.
 vplResult vplDecideLightVertices(vplRunner* runner, vplPlan* plan);
 
