@@ -302,6 +302,35 @@ TEST(PatchesComeFirstWhereDoorsHideLights, 2, SLOW)
     endWithPatches(context, "examples/scenes/flat.json", 144, 0.08, 2, VPL_METHOD_RADIOSITY);
 }
 
+// A large error that a few paths through each pixel have told may be chance. So they get more before another plan follows.
+TEST(PatchesAreNotLeftForAnErrorThatMayBeChance, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    vplRenderOptions o = optionsFor(0.2);
+    o.output.width = 96;
+    o.output.height = 54;
+    for (int i = 0; i < 2; i++) {
+        vplRenderer* r;
+        bool more = false, done;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        assert_true(done && r->plan->options.method == VPL_METHOD_RADIOSITY && r->lightRays > 0);
+        const double mean = r->judged.mean;
+        const int paths = vplTruth_Paths(r->truth);
+        r->judged.rays = 1;
+        r->spreadBefore = INFINITY;
+        r->edgeTries = 100; // none is left: all of the error is that of patches
+        r->error.total = sqrt(0.3);
+        r->judged.square = 0.3 * mean * mean;
+        r->judged.spread = (i == 0 ? 0.2 : 0.1) * mean * mean;
+        assert_int_equal(vplReconsider(r, 0.1, &done, &more), VPL_SUCCESS);
+        assert_true((vplTruth_Paths(r->truth) == 2 * paths) == (i == 0));
+        assert_true((r->done == 0) == (i == 1)); // another plan
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+}
+
 // The side of the squares of pixels that share lights, or the rays of the gather if patches come first, for a picture of 16:9.
 static int sharedBy(const vplScene* scene, int width, double error, double ms)
 {
