@@ -3,6 +3,7 @@
 #include "shapes.h"
 
 #include "math/vec.h"
+#include "render/planner/patch_plan.h"
 #include "render/renderer.h"
 
 static vplRenderOptions optionsFor(double error)
@@ -78,6 +79,24 @@ TEST(PatchesAreNotChosenAgainstTheOptionsOrTheMemory, 1)
     vplContext_SetMemoryLimit(context,
                               64 << 20); // form factors of 3,675 patches would be more than a third of it
     assert_int_equal(methodFor(scene, &o), VPL_METHOD_KELLER);
+    vplScene_Destroy(scene);
+}
+
+// The camera looks at the floor below a plate, and the lamp is above it. If all of a hundred virtual lights miss what the camera sees, a few
+// may still find a way in: patches come first, as where one light in a hundred reaches the picture.
+TEST(PatchesComeFirstWhereNoLightReachesThePicture, 1)
+{
+    vplScene* scene = closedCubeScene(context, 0.8f, 0);
+    addThing(scene, VPL_OBJECT_BOX, 0, (vplVec3){0, 0, 0}, 0, 0, (vplVec3){2.2f, 0.1f, 2.2f});
+    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 0.5f, 0}, (vplVec3){0, -1, 0}, 1);
+    aim(scene, (vplVec3){0, -0.3f, 0}, (vplVec3){0.1f, -1, 0.05f});
+    const vplRenderOptions o = optionsFor(0.1);
+    vplPlan* plan;
+    assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+    assert_true(plan->look.lights >= 100 && plan->look.reaching == 0);
+    assert_int_equal(plan->options.method, VPL_METHOD_RADIOSITY);
+    assert_true(isfinite(vplForeseenLightRays(plan)));
+    vplPlan_Destroy(plan);
     vplScene_Destroy(scene);
 }
 

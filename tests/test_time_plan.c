@@ -3,6 +3,7 @@
 #include "scenes.h"
 
 #include "base/clock.h"
+#include "reference/sparse_paths.h"
 #include "render/planner/time_plan.h"
 
 static vplRenderOptions optionsFor(double budgetMs)
@@ -324,6 +325,46 @@ TEST(MorePatchesFollowWhileThereIsTime, 2, SLOW)
         assert_true((r->edgePaths >= 16) == (i == 1));
         vplRenderer_Destroy(r);
     }
+    vplScene_Destroy(scene);
+}
+
+// Paths of the truth whose halves contradict each other tell no error. More of them take what is left of the time.
+TEST(WhatIsLeftOfTheTimeTellsAnUnknownError, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    const vplRenderOptions o = optionsFor(1e7);
+    vplResult result = VPL_CANCELLED; // other programs took so much of the time that the paths did not end
+    for (int i = 0; i < 6 && result == VPL_CANCELLED; i++) {
+        vplRenderer* r;
+        bool done;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        r->deadline = vplClockMs() + 1e7;
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS); // the coarse picture
+        vplRenderOptions few = r->plan->options;
+        few.radiosity.patches = 100;
+        assert_int_equal(vplRenderer_Plan(r, &few, false), VPL_SUCCESS);
+        assert_int_equal(few.method, VPL_METHOD_RADIOSITY);
+        assert_int_equal(vplRenderer_RunPass(r), VPL_SUCCESS);
+        r->done = 1;
+        r->passMs = 1500; // too long for more patches
+        assert_int_equal(vplJudge(r, 0, true, 1), VPL_SUCCESS);
+        const vplTruthState state = vplTruth_GetState(r->truth);
+        for (int k = 0; k < state.count; k++) {
+            state.pixels[k].sums[0].g += (k % 2 == 0 ? 1e6 : -1e6) * r->judged.mean;
+        }
+        const int before = vplTruth_Paths(r->truth);
+        setTime(r, 500);
+        done = true;
+        result = vplSpendTime(r, &done);
+        if (result == VPL_SUCCESS) {
+            assert_true(done && vplTruth_Paths(r->truth) >= 4 * before);
+            assert_null(r->edges);
+        } else {
+            assert_true(r->late);
+        }
+        vplRenderer_Destroy(r);
+    }
+    assert_int_equal(result, VPL_SUCCESS);
     vplScene_Destroy(scene);
 }
 

@@ -151,16 +151,19 @@ static int firstPatches(const vplGeometry* g, double error)
 // the higher value is taken.
 static const double HIDDEN_RAYS = 2.4;
 
+// True also if none of the lights reaches the picture: others may (corridor: one or two of 241, none with one of eight seeds).
 static bool isHidden(const vplPlan* p)
 {
-    return p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH && p->look.worth > 0;
+    return p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH;
 }
 
 double vplForeseenLightRays(const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
     const double error = o->stop.maxError, pixels = (double)o->output.width * o->output.height;
-    return error > 0 && isHidden(p) ? HIDDEN_RAYS / p->look.worth * pixels / (error * error) : 0;
+    const double worth =
+        fmax(p->look.worth, 1.0 / fmax(1, p->look.lights)); // if none reaches it, as if one did
+    return error > 0 && isHidden(p) ? HIDDEN_RAYS / worth * pixels / (error * error) : 0;
 }
 
 // The error that one pass of virtual lights leaves, about; passes grow with the square of a smaller one.

@@ -22,15 +22,21 @@ static vplResult judge(vplRenderer* r, double share)
 
 // ---- other plans
 
-// The time of a path through one pixel, as the truth's took.
-static double timeOfPath(const vplRenderer* r)
+// Milliseconds that the truth took so far.
+static double timeOfTruth(const vplRenderer* r)
 {
     double ms = 0;
     for (int i = 0; i < r->runner.stats.stageCount; i++) {
         const vplStageTime* stage = &r->runner.stats.stages[i];
         ms = strcmp(stage->name, "truth") == 0 ? stage->ms : ms;
     }
-    return ms / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
+    return ms;
+}
+
+// The time of a path through one pixel, as the truth's took.
+static double timeOfPath(const vplRenderer* r)
+{
+    return timeOfTruth(r) / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
 }
 
 // Path tracing follows only if its squared error is foreseen to be this share of that of virtual lights, both by the rays and by the time of
@@ -129,14 +135,31 @@ static const double SMOOTHER = 1.8;
 // into the picture (corridor in 5 s, seed 1: 72 % instead of 16).
 static const double UNKNOWN = 0.7, LARGE = 0.1;
 
+static bool isUnknown(const vplRenderer* r)
+{
+    const double mean = r->judged.mean, spread = r->judged.spread;
+    return spread > UNKNOWN * r->judged.square && spread > LARGE * LARGE * mean * mean;
+}
+
 // Judges the picture's error, and finds steps of edges; none if the error is as good as unknown.
 static vplResult lookForEdges(vplRenderer* r, double share, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut)
 {
     TRY(judge(r, share));
-    const double mean = r->judged.mean, spread = r->judged.spread;
-    const bool unknown = spread > UNKNOWN * r->judged.square && spread > LARGE * LARGE * mean * mean;
     *countOut = 0;
-    return unknown ? VPL_SUCCESS : vplFindUsefulSteps(r, steps, countOut);
+    return isUnknown(r) ? VPL_SUCCESS : vplFindUsefulSteps(r, steps, countOut);
+}
+
+// Twice as many paths take the truth's time again, which must be at most this share of what is left.
+static const double SHARE_TO_KNOW = 0.8;
+
+// Where nothing else would use the time, more paths of the truth tell an unknown error better.
+static vplResult learnError(vplRenderer* r)
+{
+    while (isUnknown(r) && timeOfTruth(r) < SHARE_TO_KNOW * vplTimeLeft(r)) {
+        TRY(vplRefineTruth(r));
+        TRY(judge(r, 0));
+    }
+    return VPL_SUCCESS;
 }
 
 // The planner looks for other plans once, when a sixth of the time is over, and for edges in the second half of it.
@@ -172,12 +195,12 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
     vplEdgeStep steps[VPL_EDGE_STEPS];
     int count;
     TRY(lookForEdges(r, SHARE_FOR_PATCHES, steps, &count));
-    const vplErrorState s = vplErrorState_Of(r);
+    vplErrorState s = vplErrorState_Of(r);
     const int gather = r->plan->options.radiosity.gather;
     const double left = vplTimeLeft(r), smoother = gather > 0 ? VPL_MORE_GATHER : SMOOTHER;
     const double picture = smoother * vplShareOfPicture(r->plan) * r->passMs;
     const double exchange = (1 - vplShareOfPicture(r->plan)) * r->passMs;
-    const Closing now = findClosing(r, &s, steps, count, 1, left);
+    Closing now = findClosing(r, &s, steps, count, 1, left);
     double best = WORTHWHILE * now.square, more = 1;
     for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
         const double rest = left - picture - exchange * MORE[i] * MORE[i];
@@ -193,6 +216,12 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
                100 * r->error.total, o.radiosity.patches);
         *doneOut = false;
         return vplRenderer_Replace(r, &o, false, -1);
+    }
+    if (isUnknown(r)) {
+        TRY(learnError(r));
+        TRY(lookForEdges(r, 0, steps, &count));
+        s = vplErrorState_Of(r);
+        now = findClosing(r, &s, steps, count, 1, vplTimeLeft(r));
     }
     return traceEdges(r, now.pixels);
 }
