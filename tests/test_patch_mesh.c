@@ -110,7 +110,7 @@ static Shape trianglesAtEdge(int axis, float off, vplVec3 p[6])
 // boundary of the cells in which vertices are searched for.
 TEST(VerticesAreFoundOnEdgesOfAnyDirection, 1)
 {
-    float offs[3] = {0};
+    float offs[3] = {0}; // the last two follow from the size of the cells, which the first search tells
     for (int k = 0; k < 9; k++) {
         vplVec3 p[6];
         Shape shape = trianglesAtEdge(k % 3, offs[k / 3], p);

@@ -313,7 +313,7 @@ TEST(DescriptionsAreCutLikeSnprintf, 1)
     vplScene_Destroy(scene);
 }
 
-// Smaller ones are described without. The numbers of lights double, so that the memory of some stage is just above the limit.
+// Smaller stages are described without it. The numbers of lights double, so that the memory of some stage is just above the limit.
 TEST(StagesOf64KiBAreDescribedWithTheirMemory, 1)
 {
     vplScene* scene = loadScene(context, "room.json");

@@ -100,7 +100,7 @@ typedef struct Held {
     int allocations;
 } Held;
 
-// An allocator that has no more memory than that, and none after one round.
+// An allocator that has LITTLE_MEMORY, and none at all after ONE_ROUND allocations.
 static void* limitedAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
 {
     Held* h = user;

@@ -266,7 +266,7 @@ static int countEnergyLines(double low, double high)
     return lines - 1;
 }
 
-// However little or much the energies differ.
+// The number of lines does not depend on how much the energies differ.
 TEST_ALONE(ThePlotOfTheClampHasTwoToEightGridLines)
 {
     static const double energies[][2] = {{0.99, 1}, {0.9, 0.97}, {0.6, 0.95}, {0.2, 1.1}, {1, 1.5}, {0.5, 4}};

@@ -44,8 +44,8 @@ typedef struct vplLook {
         nearShare; // share of these directions in which something is nearer than a 32nd of the scene's diagonal
     int lights;    // virtual lights that were made
     double reaching; // share of them whose light reaches a visible surface
-    // Virtual lights of equal contribution that would be as good as one of those that were made, in (0, 1]: small where
-    // few of the lights light the picture, as behind a door ajar.
+    // Virtual lights of equal contribution that would be as good as one of those that were made, in [0, 1]: 0 where none of
+    // the lights reaches the picture, small where few do, as behind a door ajar.
     double worth;
     double lightLeaving; // share of the particles that left the scene
     int64_t rays;        // cast for the look

@@ -66,7 +66,8 @@ typedef struct vplPatchSides {
     const int* hits; // per side: hits of the particles that search for sides; NULL: not known
     // Where a viewpoint sees a dark room and triangles are in groups, which may lie on both sides of its wall; else NULL. Per triangle
     // a code for its front, in the low four bits, and one for its back, in the high four. 0: light reaches the whole side. 1: light
-    // reaches no part of it. 2 + k: light reaches the part from which corner k of the node is visible.
+    // reaches no part of it. 2 + k: light reaches the part from which corner k of the node is visible;
+    // on the back, corner (3 - k) % 3.
     const uint8_t* dark;
     int faintCount; // sides left out by vplPatchSidesDef.leaveFaint
 } vplPatchSides;

@@ -151,10 +151,11 @@ static int firstPatches(const vplGeometry* g, double error)
 // the higher value is taken.
 static const double HIDDEN_RAYS = 2.4;
 
-// True also if none of the lights reaches the picture: others may (corridor: one or two of 241, none with one of eight seeds).
+// True also if none of the lights reaches the picture: others may (corridor: one or two of 241, none with one of eight seeds). Not if the
+// look saw no surface.
 static bool isHidden(const vplPlan* p)
 {
-    return p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH;
+    return p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH && p->look.background < 1;
 }
 
 double vplForeseenLightRays(const vplPlan* p)

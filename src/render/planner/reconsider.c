@@ -253,10 +253,11 @@ static bool isHopeless(const vplRenderer* r, const vplErrorState* s, const vplWa
     return isinf(way->rays) || (r->lightRays > 0 && over);
 }
 
-// Where virtual lights may take over, patches are given up or divided only if their squared error is above the one asked for by so many
-// standard errors of the truth. With 1 instead, 32 paths through each pixel of the corridor made 1,000 patches look hopeless at 10 % (96x54,
-// one of four seeds), and nothing else ended within 150 s; with more paths the picture took 44 s.
-static const double SURE = 2;
+// Where virtual lights may take over, a squared error is surely too large if it is above the one asked for by so many standard errors of the
+// truth. If it is not, more paths of the truth come before patches are given up or divided, as long as they are worth it. With 1 instead,
+// 32 paths through each pixel of the corridor made 1,000 patches look hopeless at 10 % (96x54, one of four seeds), and nothing else ended
+// within 150 s; with more paths the picture took 44 s.
+static const double SURE_ERRORS = 2;
 
 // Radiosity has no passes that add up: pixels at edges are traced, or the patches are made smaller, or virtual lights take over.
 static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double asked, bool* doneOut,
@@ -268,9 +269,13 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
     }
     TRY(vplFindWay(r, s, asked, &way));
     // In plain scenes, where nothing limits the rays, the truth is cheap beside the patches that it may spare.
-    const bool limited = r->lightRays > 0, far = way.rest - (limited ? SURE * s->spread : 0) > asked * asked;
+    const bool limited = r->lightRays > 0,
+               far = way.rest - (limited ? SURE_ERRORS * s->spread : 0) > asked * asked;
     const bool inVain = r->coarserSquare > 0 && far && way.rest > 0.5 * r->coarserSquare;
-    const double next = limited && s->finer > 0 ? fmin(way.rays, s->finerCost * s->spent) : way.rays;
+    const double rays = isinf(way.rays) && limited
+                            ? r->lightRays
+                            : way.rays; // no way: the truth may cost what virtual lights do
+    const double next = limited && s->finer > 0 ? fmin(rays, s->finerCost * s->spent) : rays;
     if (!limited || inVain || !far) {
         TRY(learnMore(r, s, asked, WORTH_OF_PATCHES * next, limited ? 0.5 * next : 0, moreOut));
     }

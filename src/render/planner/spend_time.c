@@ -152,10 +152,11 @@ static vplResult lookForEdges(vplRenderer* r, double share, vplEdgeStep steps[VP
 // Twice as many paths take the truth's time again, which must be at most this share of what is left.
 static const double SHARE_TO_KNOW = 0.8;
 
-// Where nothing else would use the time, more paths of the truth tell an unknown error better.
+// More paths of the truth make an unknown error known, where nothing else would use the time.
 static vplResult learnError(vplRenderer* r)
 {
-    while (isUnknown(r) && timeOfTruth(r) < SHARE_TO_KNOW * vplTimeLeft(r)) {
+    while (isUnknown(r) && 2 * vplTruth_Paths(r->truth) <= VPL_MAX_SAMPLES &&
+           timeOfTruth(r) < SHARE_TO_KNOW * vplTimeLeft(r)) {
         TRY(vplRefineTruth(r));
         TRY(judge(r, 0));
     }
@@ -186,6 +187,23 @@ static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
     return VPL_SUCCESS;
 }
 
+// Traces so many pixels at edges. If the error is unknown, more paths of the truth come first, and tell which pixels these are.
+static vplResult closePatches(vplRenderer* r, int pixels)
+{
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    int count;
+    if (!isUnknown(r)) {
+        return traceEdges(r, pixels);
+    }
+    TRY(learnError(r));
+    if (isUnknown(r)) {
+        return VPL_SUCCESS;
+    }
+    TRY(vplFindUsefulSteps(r, steps, &count));
+    const vplErrorState s = vplErrorState_Of(r);
+    return traceEdges(r, findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).pixels);
+}
+
 // Patches have no noise. Either there are more of them, whose time grows with the square of their number and whose squared error falls with
 // it, and paths at edges follow in what is left of the time; or these paths come at once.
 static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
@@ -195,12 +213,12 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
     vplEdgeStep steps[VPL_EDGE_STEPS];
     int count;
     TRY(lookForEdges(r, SHARE_FOR_PATCHES, steps, &count));
-    vplErrorState s = vplErrorState_Of(r);
+    const vplErrorState s = vplErrorState_Of(r);
     const int gather = r->plan->options.radiosity.gather;
     const double left = vplTimeLeft(r), smoother = gather > 0 ? VPL_MORE_GATHER : SMOOTHER;
     const double picture = smoother * vplShareOfPicture(r->plan) * r->passMs;
     const double exchange = (1 - vplShareOfPicture(r->plan)) * r->passMs;
-    Closing now = findClosing(r, &s, steps, count, 1, left);
+    const Closing now = findClosing(r, &s, steps, count, 1, left);
     double best = WORTHWHILE * now.square, more = 1;
     for (size_t i = 0; i < sizeof MORE / sizeof *MORE; i++) {
         const double rest = left - picture - exchange * MORE[i] * MORE[i];
@@ -217,13 +235,7 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
         *doneOut = false;
         return vplRenderer_Replace(r, &o, false, -1);
     }
-    if (isUnknown(r)) {
-        TRY(learnError(r));
-        TRY(lookForEdges(r, 0, steps, &count));
-        s = vplErrorState_Of(r);
-        now = findClosing(r, &s, steps, count, 1, vplTimeLeft(r));
-    }
-    return traceEdges(r, now.pixels);
+    return closePatches(r, now.pixels);
 }
 
 vplResult vplSpendTime(vplRenderer* r, bool* doneOut)
