@@ -291,28 +291,35 @@ TEST(PathsAtEdgesFillTheRest, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
+// A renderer whose first picture is made of so many patches, after a coarse one.
+static vplRenderer* rendererWithPatches(const vplScene* scene, int patches)
+{
+    const vplRenderOptions o = optionsFor(1e7);
+    vplRenderer* r;
+    bool done;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    r->deadline = vplClockMs() + 1e7;
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS); // the coarse picture
+    vplRenderOptions few = r->plan->options;
+    few.radiosity.patches = patches;
+    assert_int_equal(vplRenderer_Plan(r, &few, false), VPL_SUCCESS);
+    assert_int_equal(few.method, VPL_METHOD_RADIOSITY);
+    setTime(r, 1e6); // until the picture is there
+    assert_int_equal(vplRenderer_RunPass(r), VPL_SUCCESS);
+    r->done = 1;
+    return r;
+}
+
 // Where a first number of patches took little of the time, more follow; else paths at edges.
 TEST(MorePatchesFollowWhileThereIsTime, 2, SLOW)
 {
     vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
-    const vplRenderOptions o = optionsFor(1e7);
     int busy = 0; // other programs took so much of the time that the paths did not end
     for (int i = 0; i < 2; i++) {
-        vplRenderer* r;
-        bool done = false;
-        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-        r->deadline = vplClockMs() + 1e7;
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS); // the coarse picture
-        vplRenderOptions few = r->plan->options;
-        few.radiosity.patches = 500;
-        assert_int_equal(vplRenderer_Plan(r, &few, false), VPL_SUCCESS);
-        assert_int_equal(few.method, VPL_METHOD_RADIOSITY);
-        setTime(r, 1e6); // until the picture is there
-        assert_int_equal(vplRenderer_RunPass(r), VPL_SUCCESS);
-        r->done = 1;
+        vplRenderer* r = rendererWithPatches(scene, 500);
+        bool done = true;
         r->passMs = i == 0 ? 10 : 1500;
         setTime(r, 2000);
-        done = true;
         const vplResult result = vplSpendTime(r, &done);
         if (result == VPL_CANCELLED && r->late && busy++ < 5) {
             vplRenderer_Destroy(r);
@@ -332,20 +339,10 @@ TEST(MorePatchesFollowWhileThereIsTime, 2, SLOW)
 TEST(WhatIsLeftOfTheTimeTellsAnUnknownError, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
-    const vplRenderOptions o = optionsFor(1e7);
     vplResult result = VPL_CANCELLED; // other programs took so much of the time that the paths did not end
     for (int i = 0; i < 6 && result == VPL_CANCELLED; i++) {
-        vplRenderer* r;
-        bool done;
-        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-        r->deadline = vplClockMs() + 1e7;
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS); // the coarse picture
-        vplRenderOptions few = r->plan->options;
-        few.radiosity.patches = 100;
-        assert_int_equal(vplRenderer_Plan(r, &few, false), VPL_SUCCESS);
-        assert_int_equal(few.method, VPL_METHOD_RADIOSITY);
-        assert_int_equal(vplRenderer_RunPass(r), VPL_SUCCESS);
-        r->done = 1;
+        vplRenderer* r = rendererWithPatches(scene, 100);
+        bool done = true;
         const double start = vplClockMs();
         assert_int_equal(vplJudge(r, 0, true, 1), VPL_SUCCESS);
         assert_true((double)r->judged.rays * VPL_PATH_RAY >
@@ -358,7 +355,6 @@ TEST(WhatIsLeftOfTheTimeTellsAnUnknownError, 2)
         }
         const int before = vplTruth_Paths(r->truth);
         setTime(r, ms);
-        done = true;
         result = vplSpendTime(r, &done);
         if (result == VPL_SUCCESS) {
             assert_true(done && vplTruth_Paths(r->truth) >= 4 * before);

@@ -188,11 +188,10 @@ int vplTile_GetCoverage(const vplTile* tile, int element, vplCoverage out[VPL_MA
 typedef void vplTileFcn(void* data, vplTile* tile, int worker);
 
 typedef struct vplRasterStats {
-    int64_t drawCalls;   // draws recorded
-    int64_t fragments;   // fragments that passed all tests
-    int64_t trianglesIn; // triangles of the meshes whose vertices were shaded
-    int64_t
-        trianglesBinned; // with the pieces of clipped ones: those with an area that may cover a pixel, facing either way
+    int64_t drawCalls;        // draws recorded
+    int64_t fragments;        // fragments that passed all tests
+    int64_t trianglesIn;      // triangles of the meshes whose vertices were shaded
+    int64_t trianglesBinned;  // that may cover a pixel, facing either way; clipped ones count by their pieces
     double vertexMs, tilesMs; // time of the vertex stage (with clipping and binning) and of the tiles
 } vplRasterStats;
 

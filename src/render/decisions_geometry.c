@@ -88,7 +88,7 @@ static const double LEAST_BOUNCE_SHARE = 1.0 / 64;
 // Most bounces that SSVP makes by itself: in a room that reflects 0.77 of its light they leave out a 64th.
 enum { MOST_SSVP_BOUNCES = 16 };
 
-// Of the light that is reflected k times or more in a closed room, the share rho^n is reflected n times more.
+// In a closed room whose surfaces reflect the share rho of their light, the share rho^n is left after n further bounces.
 static void chooseBounces(const vplRunner* r, vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
@@ -106,7 +106,7 @@ static void chooseBounces(const vplRunner* r, vplPlan* p)
     o->maxBounces = o->maxBounces < VPL_MAX_STEPS_REPORTED ? o->maxBounces : VPL_MAX_STEPS_REPORTED;
 }
 
-// Counts the most lights that SSVP can have.
+// Counts the lights of each bounce; SSVP has at most so many.
 static void countSsvpLights(vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;

@@ -162,8 +162,8 @@ double vplForeseenLightRays(const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
     const double error = o->stop.maxError, pixels = (double)o->output.width * o->output.height;
-    const double worth =
-        fmax(p->look.worth, 1.0 / fmax(1, p->look.lights)); // if none reaches it, as if one did
+    // If no light reaches the picture, as if one did.
+    const double worth = fmax(p->look.worth, 1.0 / fmax(1, p->look.lights));
     return error > 0 && isHidden(p) ? HIDDEN_RAYS / worth * pixels / (error * error) : 0;
 }
 

@@ -272,9 +272,8 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
     const bool limited = r->lightRays > 0,
                far = way.rest - (limited ? SURE_ERRORS * s->spread : 0) > asked * asked;
     const bool inVain = r->coarserSquare > 0 && far && way.rest > 0.5 * r->coarserSquare;
-    const double rays = isinf(way.rays) && limited
-                            ? r->lightRays
-                            : way.rays; // no way: the truth may cost what virtual lights do
+    // Where there is no way, the truth may cost what virtual lights do.
+    const double rays = limited && isinf(way.rays) ? r->lightRays : way.rays;
     const double next = limited && s->finer > 0 ? fmin(rays, s->finerCost * s->spent) : rays;
     if (!limited || inVain || !far) {
         TRY(learnMore(r, s, asked, WORTH_OF_PATCHES * next, limited ? 0.5 * next : 0, moreOut));

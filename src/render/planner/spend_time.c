@@ -22,7 +22,7 @@ static vplResult judge(vplRenderer* r, double share)
 
 // ---- other plans
 
-// Milliseconds that the truth took so far.
+// Milliseconds spent on the truth so far.
 static double timeOfTruth(const vplRenderer* r)
 {
     double ms = 0;
@@ -33,7 +33,7 @@ static double timeOfTruth(const vplRenderer* r)
     return ms;
 }
 
-// The time of a path through one pixel, as the truth's took.
+// The mean milliseconds of one path through one pixel, of the truth so far.
 static double timeOfPath(const vplRenderer* r)
 {
     return timeOfTruth(r) / vplTruth_CountPixels(r->truth) / vplTruth_Paths(r->truth);
@@ -141,12 +141,18 @@ static bool isUnknown(const vplRenderer* r)
     return spread > UNKNOWN * r->judged.square && spread > LARGE * LARGE * mean * mean;
 }
 
-// Judges the picture's error, and finds steps of edges; none if the error is as good as unknown.
+// Finds steps of edges; none if the error is as good as unknown.
+static vplResult findKnownSteps(vplRenderer* r, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut)
+{
+    *countOut = 0;
+    return isUnknown(r) ? VPL_SUCCESS : vplFindUsefulSteps(r, steps, countOut);
+}
+
+// Judges the picture's error, and finds steps of edges.
 static vplResult lookForEdges(vplRenderer* r, double share, vplEdgeStep steps[VPL_EDGE_STEPS], int* countOut)
 {
     TRY(judge(r, share));
-    *countOut = 0;
-    return isUnknown(r) ? VPL_SUCCESS : vplFindUsefulSteps(r, steps, countOut);
+    return findKnownSteps(r, steps, countOut);
 }
 
 // Twice as many paths take the truth's time again, which must be at most this share of what is left.
@@ -187,25 +193,16 @@ static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// Traces so many pixels at edges. If the error is unknown, more paths of the truth come first, and tell which pixels these are.
-static vplResult closePatches(vplRenderer* r, int pixels)
+// Spends all of the time that is left on paths through those pixels at edges that leave the least error.
+static vplResult traceBestEdges(vplRenderer* r, const vplEdgeStep* steps, int count)
 {
-    vplEdgeStep steps[VPL_EDGE_STEPS];
-    int count;
-    if (!isUnknown(r)) {
-        return traceEdges(r, pixels);
-    }
-    TRY(learnError(r));
-    if (isUnknown(r)) {
-        return VPL_SUCCESS;
-    }
-    TRY(vplFindUsefulSteps(r, steps, &count));
-    const vplErrorState s = vplErrorState_Of(r);
+    vplErrorState s = vplErrorState_Of(r);
+    s.once = true; // no pass follows
     return traceEdges(r, findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).pixels);
 }
 
 // Patches have no noise. Either there are more of them, whose time grows with the square of their number and whose squared error falls with
-// it, and paths at edges follow in what is left of the time; or these paths come at once.
+// it, and paths at edges follow in what is left of the time; or these paths come at once, after more paths of the truth if the error is unknown.
 static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
 {
     static const double MORE[] = {1.5, 2, 3, 4, 6};
@@ -235,7 +232,11 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
         *doneOut = false;
         return vplRenderer_Replace(r, &o, false, -1);
     }
-    return closePatches(r, now.pixels);
+    if (isUnknown(r)) {
+        TRY(learnError(r));
+        TRY(findKnownSteps(r, steps, &count));
+    }
+    return traceBestEdges(r, steps, count);
 }
 
 vplResult vplSpendTime(vplRenderer* r, bool* doneOut)
@@ -262,7 +263,5 @@ vplResult vplSpendRest(vplRenderer* r)
         return VPL_SUCCESS;
     }
     TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
-    vplErrorState s = vplErrorState_Of(r);
-    s.once = true; // no pass follows
-    return traceEdges(r, findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).pixels);
+    return traceBestEdges(r, steps, count);
 }
