@@ -80,6 +80,7 @@ static vplConnection connectToSky(const vplPathScene* s, const vplPathVertex* ve
     found.bsdfRatio = cosine / VPL_PI / density;
     found.value = vplRadiance_Reflect(found.bsdfRatio, vertex->rho, vplRadiance_Of(light));
     found.particleRatio = s->skyShare * flat;
+    found.bsdfRatio *= 1 - vertex->guided;
     return found;
 }
 
@@ -116,6 +117,16 @@ static double probabilityOf(const vplPathScene* s, const vplPathVertex* vertex, 
     return source < 0 ? 0
                       : vplEmitterTree_Probability(tree, vertex->hit.position, vertex->shading, source) *
                             (onTriangle ? 1 : TREE_OFFERS);
+}
+
+// The density, per square metre, with which a path from a guided vertex finds a point on a triangle that emits.
+static __attribute__((noinline)) double guidedDensity(const vplPathScene* s, const vplPathVertex* vertex,
+                                                      const vplLightPoint* light, double reflection)
+{
+    const vplHit hit = {.triangle = light->triangle, .position = light->position, .normal = light->normal};
+    const vplVec3 direction = vplSub(light->position, vertex->hit.position);
+    return vplPathVertex_Density(s, vertex, s->def.guide->find(s->def.guide->data, &hit, direction),
+                                 reflection);
 }
 
 // Sources are chosen by power and particles leave emitters by intensity, so the density of a particle from an
@@ -166,6 +177,10 @@ connect(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint*
         found.bsdfRatio = cosine / VPL_PI * found.cosineAtLight * falloff / density;
         found.value = vplRadiance_Reflect(found.bsdfRatio, vertex->rho, vplRadiance_Of(radiance));
         found.particleRatio = share * found.cosineAtLight / VPL_PI * flat * falloff;
+        if (vertex->guided > 0) {
+            const double reflection = cosine / VPL_PI * found.cosineAtLight * falloff;
+            found.bsdfRatio = guidedDensity(s, vertex, light, reflection) / density;
+        }
     }
     return found;
 }

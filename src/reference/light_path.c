@@ -13,6 +13,15 @@
 // First indices of the sets of random numbers that light paths draw; paths from the camera use lower ones.
 enum { VERTEX_SETS = 1 << 30, CHOICE_SETS = VERTEX_SETS + VPL_MOST_LIGHT_VERTICES };
 
+static vplPathVertex makeVertex(const vplPathScene* s, const vplHit* hit, vplVec3 direction)
+{
+    vplPathVertex v = vplPathVertex_Make(s, hit, direction, VPL_BOUNCE_SPREAD * hit->t);
+    if (s->def.guide != NULL) {
+        vplPathVertex_Locate(s, &v, direction);
+    }
+    return v;
+}
+
 // The first vertex. Returns false if the light path ends before it, or reflects nothing.
 static bool makeFirst(vplPathState* path, double choice, const float u[4], vplLightPath* p)
 {
@@ -29,7 +38,7 @@ static bool makeFirst(vplPathState* path, double choice, const float u[4], vplLi
     const vplEmissionSource* source = &s->emission->sources[start.source];
     const vplLightPoint light = {source->emitter, source->triangle, start.position, start.normal};
     vplLightVertex* first = &p->vertices[0];
-    first->at = vplPathVertex_Make(s, &hit, start.ray.direction, VPL_BOUNCE_SPREAD * hit.t);
+    first->at = makeVertex(s, &hit, start.ray.direction);
     first->carried = (vplRgb){1, 1, 1};
     first->ratio = 1;
     first->edges = 0;
@@ -56,14 +65,19 @@ static bool makeNext(vplPathState* path, const vplLightVertex* from, uint32_t se
     if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
         return false;
     }
-    to->at = vplPathVertex_Make(s, &hit, direction, VPL_BOUNCE_SPREAD * hit.t);
+    to->at = makeVertex(s, &hit, direction);
     const double left = vplDot(direction, from->at.normal), flat = -vplDot(direction, to->at.normal),
                  cosine = -vplDot(direction, to->at.shading);
-    const double density = vplDensityOfReflection(cosine, left, hit.t); // from here to the vertex before
+    const double reflection = vplDensityOfReflection(cosine, left, hit.t); // from here to the vertex before
+    const double density = vplPathVertex_Density(s, &to->at, from->at.place, reflection);
     const vplRgb kept = vplRgbScale(1 / chance, to->at.rho);
     *reflected = vplRgbMul(*reflected, kept);
     to->carried = vplRgbMul(from->carried, kept);
     to->ratio = from->ratio * flat / cosine;
+    if (to->at.guided > 0) {
+        to->carried = vplRgbScale((float)(reflection / density), to->carried);
+        to->ratio *= reflection / density;
+    }
     to->edges = from->edges + vplHeuristic(s, from->ratio / density);
     return density > 0 && flat > 0; // else no path from the camera goes along there
 }
@@ -100,12 +114,15 @@ static Offer offerOf(const vplPathState* path, const vplPathVertex* v, const vpl
     if (!(cosine > 0 && flat > 0 && o.cosine > 0)) {
         return o;
     }
-    const double density = vplDensityOfReflection(cosine, o.cosine, o.distance);
-    const double edges = l->edges + vplHeuristic(s, l->ratio / density) +
-                         vplHeuristic(s, l->ratio * flat / cosine) * path->edges[s->lightVertices - 1 - i];
+    const double reflection = vplDensityOfReflection(cosine, o.cosine, o.distance);
+    const double density = vplPathVertex_Density(s, v, l->at.place, reflection);
+    const double share = v->guided > 0 ? reflection / density : 1;
+    const double edges =
+        l->edges + vplHeuristic(s, l->ratio / density) +
+        vplHeuristic(s, l->ratio * flat / cosine * share) * path->edges[s->lightVertices - 1 - i];
     const double mine = p->light.particleRatio * l->ratio / density;
-    const double weight =
-        (s->def.balanceHeuristic ? 1 : mine) / (p->weights + vplHeuristic(s, p->light.particleRatio) * edges);
+    const double weight = share * (s->def.balanceHeuristic ? 1 : mine) /
+                          (p->weights + vplHeuristic(s, p->light.particleRatio) * edges);
     o.light = vplRadiance_Reflect(weight, vplRgbMul(v->rho, l->carried), p->light.value);
     o.power = o.light.r + o.light.g + o.light.b;
     return o;

@@ -8,10 +8,11 @@
 // A surface that a light path has met.
 typedef struct vplLightVertex {
     vplPathVertex at;
-    // The product of the reflectances of all vertices so far but the first, over the probabilities that the path went on.
+    // The product of the reflectances of all vertices so far but the first, over the probabilities that the path went on, and of the
+    // density of the reflection over that of guided paths at each.
     vplRgb carried;
     // The density of these vertices, over that with which a path from the camera finds them in reverse; differs from 1 where
-    // normals are interpolated.
+    // normals are interpolated, or paths are guided.
     double ratio;
     double edges; // as of vplPathState, of the edges between vertices so far
 } vplLightVertex;

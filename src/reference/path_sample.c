@@ -13,12 +13,16 @@
 
 enum { CAMERA_SET, LIGHT_PATH_SET, FIRST_SET };
 
+// The first index of the sets that guided paths draw.
+enum { GUIDE_SETS = 1 << 29 };
+
 static void add(vplRadiance* sum, vplRgb throughput, vplRadiance light)
 {
     vplRadiance_Add(sum, vplRadiance_Reflect(1, throughput, light));
 }
 
-// Russian roulette: false ends the path; surviving paths carry the light of those that end.
+// Russian roulette: false ends the path; surviving paths carry the light of those that end. The throughput of guided paths is small where much
+// light comes from, so that it would end them there. Theirs is decided by what surfaces have reflected of it.
 static bool survives(const vplPathState* path, uint32_t set, vplRgb* throughput)
 {
     const float chance = vplPathScene_Survival(path->scene, *throughput);
@@ -34,21 +38,56 @@ static bool survives(const vplPathState* path, uint32_t set, vplRgb* throughput)
     return true;
 }
 
-// Makes the next vertex, and adds the edge to it to the path's. Light paths leave `from` by the cosine of its normal, where paths from the
-// camera leave it by that of the shading normal: this changes their densities on all earlier edges.
-static vplPathVertex arrive(vplPathState* path, const vplPathVertex* from, const vplHit* hit,
-                            vplVec3 direction)
+// Adds the edge between two vertices to the path's. Light paths leave `from` by the cosine of its normal, where paths from the camera leave it by
+// that of the shading normal or as the guide says: this changes their densities on all earlier edges. Returns the density of the diffuse
+// reflection over that of the path.
+static inline __attribute__((always_inline)) double addEdge(vplPathState* path, const vplPathVertex* from,
+                                                            vplPathVertex* to, vplVec3 direction, bool guided)
 {
     const vplPathScene* s = path->scene;
-    vplPathVertex v = vplPathVertex_Make(s, hit, direction, VPL_BOUNCE_SPREAD * hit->t);
     const double flat = vplDot(direction, from->normal), cosine = vplDot(direction, from->shading);
-    const double density = vplDensityOfReflection(cosine, -vplDot(direction, v.normal), hit->t);
-    const double ratio = cosine > 0 ? vplHeuristic(s, flat / cosine) : 0, edge = vplHeuristic(s, 1 / density);
+    const double reflection = vplDensityOfReflection(cosine, -vplDot(direction, to->normal), to->hit.t);
+    const double density = guided ? vplPathVertex_Density(s, from, to->place, reflection) : reflection;
+    const double share = !guided ? 1 : density > 0 ? reflection / density : 0;
+    const double ratio = cosine > 0 ? vplHeuristic(s, flat / cosine * share) : 0,
+                 edge = vplHeuristic(s, 1 / density);
     for (int n = s->lightVertices; n > 0; n--) {
         path->edges[n] = fmin(ratio * path->edges[n - 1] + edge, DBL_MAX);
     }
-    v.edges = path->edges[s->lightVertices];
-    return v;
+    to->edges = path->edges[s->lightVertices];
+    return share;
+}
+
+// Where a path goes from a vertex.
+typedef struct Way {
+    vplVec3 direction;
+    vplGuidePoint to; // `place` is negative where the path is reflected
+} Way;
+
+// Chooses where the path goes; false if that is nowhere. u: for a reflection.
+static inline __attribute__((always_inline)) bool chooseWay(const vplPathState* path, const vplPathVertex* v,
+                                                            int bounce, const float u[2], bool guided,
+                                                            Way* way)
+{
+    float g[4];
+    way->to.place = -1;
+    if (guided && v->guided > 0) {
+        vplPath_Draw(path, (uint32_t)(GUIDE_SETS + bounce), g);
+    }
+    if (guided && v->guided > 0 && (double)g[0] < v->guided) {
+        const vplPathGuide* guide = path->scene->def.guide;
+        way->to = guide->choose(guide->data, v->place, g + 1);
+        way->direction = vplNormalize(vplSub(way->to.position, v->hit.position));
+        return vplDot(way->direction, v->normal) > 0 && vplDot(way->direction, v->shading) > 0;
+    }
+    way->direction = vplSampleCosineAround(v->shading, u[0], u[1]);
+    return vplDot(way->direction, v->normal) > 0;
+}
+
+// False where something is before the point to which the path should go. The guide's density counts points that are seen only.
+static bool isReached(const Way* way, const vplPathVertex* v)
+{
+    return way->to.place < 0 || (v->place == way->to.place && v->hit.triangle == way->to.triangle);
 }
 
 // Bounces between two questions whether the task goes on: less than a millisecond.
@@ -56,11 +95,13 @@ enum { BOUNCES_PER_QUESTION = 512 };
 
 // Follows the bounces after the camera's first hit. The path is the same for every range of bounces, so that
 // pictures of single bounces add up exactly.
-static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLightPath* light,
-                          vplRadiance* sum)
+static inline __attribute__((always_inline)) void followBounces(vplPathState* path, vplPathVertex vertex,
+                                                                const vplLightPath* light, bool guided,
+                                                                vplRadiance* sum)
 {
     const vplPathScene* s = path->scene;
     vplRgb throughput = {1, 1, 1};
+    double share = 1; // of guided paths: what the throughput is multiplied by besides
     for (int bounce = 0; bounce <= s->def.lastBounce; bounce++) {
         const uint32_t set = (uint32_t)(2 * bounce + FIRST_SET); // and the next, for more than four numbers
         const bool counts = bounce >= s->def.firstBounce, last = bounce == s->def.lastBounce;
@@ -71,33 +112,55 @@ static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLig
         float u[4];
         vplPath_Draw(path, set, u);
         if (counts) {
-            add(sum, throughput, vplSampleDirect(path, &vertex, u + 2, set + 1));
+            add(sum, guided ? vplRgbScale((float)share, throughput) : throughput,
+                vplSampleDirect(path, &vertex, u + 2, set + 1));
         }
         if (light->count > 0 && !last && bounce + light->count >= s->def.firstBounce) {
-            add(sum, throughput, vplConnectToLightPath(path, &vertex, light, bounce, throughput));
+            add(sum, guided ? vplRgbScale((float)share, throughput) : throughput,
+                vplConnectToLightPath(path, &vertex, light, bounce, throughput));
         }
         if (last && s->trianglePower <= 0 && s->geometry->environment == NULL) {
             return;
         }
         throughput = vplRgbMul(throughput, vertex.rho);
-        vplVec3 direction = vplSampleCosineAround(vertex.shading, u[0], u[1]);
-        if (!(vplDot(direction, vertex.normal) > 0) || !survives(path, set + 1, &throughput)) {
+        Way way;
+        if (!chooseWay(path, &vertex, bounce, u, guided, &way) || !survives(path, set + 1, &throughput)) {
             return;
         }
-        vplRay ray = vplGeometry_Leave(s->geometry, &vertex.hit, direction);
+        vplRay ray = vplGeometry_Leave(s->geometry, &vertex.hit, way.direction);
         vplHit hit;
         path->rays++;
         if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
-            if (counts) {
-                add(sum, throughput, vplMissEmission(s, &vertex, direction));
+            if (counts && way.to.place < 0) {
+                share = guided ? share / (1 - vertex.guided) : share;
+                add(sum, guided ? vplRgbScale((float)share, throughput) : throughput,
+                    vplMissEmission(s, &vertex, way.direction));
             }
             return;
         }
-        if (counts) {
-            add(sum, throughput, vplHitEmission(s, &vertex, &hit, direction));
+        const vplPathVertex from = vertex;
+        vertex = vplPathVertex_Make(s, &hit, way.direction, VPL_BOUNCE_SPREAD * hit.t);
+        if (guided) {
+            vplPathVertex_Locate(s, &vertex, way.direction);
         }
-        vertex = arrive(path, &vertex, &hit, direction);
+        if (guided && !isReached(&way, &vertex)) {
+            return;
+        }
+        share *= addEdge(path, &from, &vertex, way.direction, guided);
+        if (counts) {
+            add(sum, guided ? vplRgbScale((float)share, throughput) : throughput,
+                vplHitEmission(s, &from, &hit, way.direction));
+        }
     }
+}
+
+// Compiled for themselves, so that paths without a guide take no longer than they would if there were none.
+static __attribute__((noinline)) void followGuided(vplPathState* path, vplPathVertex vertex,
+                                                   vplVec3 direction, const vplLightPath* light,
+                                                   vplRadiance* sum)
+{
+    vplPathVertex_Locate(path->scene, &vertex, direction);
+    followBounces(path, vertex, light, true, sum);
 }
 
 void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
@@ -128,5 +191,10 @@ void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
     }
     // Paths average over the pixel themselves: each looks up half of its width.
     const float width = 0.5f * s->pixelWidth * (hit.t + (float)camera->nearPlane);
-    followBounces(path, vplPathVertex_Make(s, &hit, ray.direction, width), &light, sum);
+    const vplPathVertex vertex = vplPathVertex_Make(s, &hit, ray.direction, width);
+    if (s->def.guide != NULL) {
+        followGuided(path, vertex, ray.direction, &light, sum);
+    } else {
+        followBounces(path, vertex, &light, false, sum);
+    }
 }

@@ -110,7 +110,8 @@ static __attribute__((noinline)) vplRgb paintAt(const vplGeometry* g, const vplH
 vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction, float width)
 {
     const vplGeometry* g = s->geometry;
-    vplPathVertex v = {.hit = *hit, .normal = hit->normal, .shading = vplGeometry_ShadingNormal(g, hit)};
+    vplPathVertex v = {
+        .hit = *hit, .normal = hit->normal, .shading = vplGeometry_ShadingNormal(g, hit), .place = -1};
     v.rho = g->paint == NULL ? g->materials[g->triangleMaterials[hit->triangle]].diffuse
                              : paintAt(g, hit, direction, width);
     if (vplDot(direction, hit->normal) > 0) {
@@ -118,6 +119,13 @@ vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVe
         v.shading = vplNegate(v.shading);
     }
     return v;
+}
+
+void vplPathVertex_Locate(const vplPathScene* s, vplPathVertex* v, vplVec3 direction)
+{
+    const vplPathGuide* g = s->def.guide;
+    v->place = g->find(g->data, &v->hit, direction);
+    v->guided = v->place >= 0 && g->knows(g->data, v->place) ? VPL_GUIDED_SHARE : 0;
 }
 
 vplRgb vplPathScene_EmissionAt(const vplPathScene* s, const vplHit* hit, vplVec3 direction)

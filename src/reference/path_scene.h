@@ -8,6 +8,7 @@
 #include "geometry/emitter_trees.h"
 #include "geometry/paint.h"
 #include "math/sobol.h"
+#include "reference/path_guide.h"
 
 // Techniques for sampling the last steps of a path to a light. Where several can find the same path, multiple
 // importance sampling weights their results.
@@ -51,6 +52,7 @@ typedef struct vplPathDef {
     // VPL_PATH_EMITTERS_OF_TREE and VPL_PATH_TRIANGLES_OF_TREE.
     int emittersOfTree, trianglesOfTree;
     const vplEmitterTrees* trees; // of these emitters, with trees as above; NULL (default): they are made
+    const vplPathGuide* guide;    // NULL (default): paths go where they are reflected
 } vplPathDef;
 
 vplPathDef vplDefaultPathDef(void);
@@ -154,12 +156,30 @@ typedef struct vplPathVertex {
     vplVec3 normal;  // of the surface, on the side that the path came from
     vplVec3 shading; // normal to shade with, on the same side
     vplRgb rho;
-    double edges; // as of vplPathState, for the longest light paths
+    double edges;  // as of vplPathState, for the longest light paths
+    int place;     // of the guide; negative: of none
+    double guided; // the probability with which the path goes on to where the guide says
 } vplPathVertex;
 
 // `width`: diameter, metres, of the cone around the ray in `direction`, of any length.
 vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction,
                                  float width);
+
+// Finds the vertex's place. The scene must have a guide.
+void vplPathVertex_Locate(const vplPathScene* scene, vplPathVertex* vertex, vplVec3 direction);
+
+// The density, per square metre, with which a path goes from the vertex to a point of `sender`, which may be negative. `reflection`: that of
+// the diffuse reflection alone.
+static inline double vplPathVertex_Density(const vplPathScene* s, const vplPathVertex* v, int sender,
+                                           double reflection)
+{
+    if (v->guided == 0) {
+        return reflection;
+    }
+    const vplPathGuide* g = s->def.guide;
+    return (1 - v->guided) * reflection +
+           (sender < 0 ? 0 : v->guided * g->density(g->data, v->place, sender));
+}
 
 // The radiance that the surface emits against `direction`.
 vplRgb vplPathScene_EmissionAt(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);

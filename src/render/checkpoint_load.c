@@ -211,10 +211,10 @@ static vplResult loadState(Loading* l)
     r->edgeTries = (int)h->tries;
     r->coarserSquare = h->coarser;
     r->lightRays = h->lights;
+    r->stale = true;
     if (h->edges[0] > 0) { // made again, from the same picture
         TRY(vplRenderer_TraceEdges(r, (int)h->edges[0], (int)h->edges[1]));
     }
-    r->stale = true;
     r->planRays = (double)r->runner.stats.rays - h->spent;
     r->turn = (vplTurn){h->turn[0], h->turn[1], (int)h->side};
     r->unreviewed = h->unreviewed != 0 && r->done > 0;

@@ -207,6 +207,7 @@ static vplResult openEdges(vplRenderer* r, int pixels, int paths)
 vplResult vplRenderer_TraceEdges(vplRenderer* r, int pixels, int paths)
 {
     const double start = vplClockMs();
+    TRY(vplRenderer_RefreshPatches(r));
     const bool goesOn = r->edges != NULL && r->edgePixels == pixels && r->edgePaths <= paths;
     const int64_t before = goesOn ? vplEdges_Rays(r->edges) : 0;
     const vplResult result =

@@ -133,6 +133,10 @@ vplResult vplRenderer_RunPass(vplRenderer* renderer);
 // Makes the picture of all passes so far of the plan under way.
 vplResult vplRenderer_Resolve(vplRenderer* renderer, vplImage** imageOut);
 
+// Makes patches and their light again, which guide paths, where the planning of another plan was cancelled or the render was loaded since the
+// last pass.
+vplResult vplRenderer_RefreshPatches(vplRenderer* renderer);
+
 // True if there is a picture that can be shown.
 bool vplRenderer_HasPicture(const vplRenderer* renderer);
 

@@ -29,21 +29,35 @@ static void estimateNoise(vplRenderer* r, const vplImage* image)
     }
 }
 
+// Makes the results of the last pass up to `last` again.
+static vplResult refresh(vplRenderer* r, vplStageId last)
+{
+    const vplRenderStats before = r->runner.stats;
+    r->runner.run.pass = r->done - 1;
+    const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, last);
+    r->runner.stats = before;
+    r->stale = result != VPL_SUCCESS;
+    return result;
+}
+
 // Makes the virtual lights of the last pass again, for marks on the picture, where a pass was cancelled or
 // the render was loaded since.
 static vplResult refreshLights(vplRenderer* r)
 {
-    const vplRunner before = r->runner;
+    vplProgressFcn* progress = r->runner.progress;
     if (!r->stale || VPL_SHOWS[r->plan->options.output.show].drawOver == NULL) {
         return VPL_SUCCESS;
     }
     r->runner.progress = NULL; // it is short, and not part of a pass
-    r->runner.run.pass = r->done - 1;
-    const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_VIRTUAL_LIGHTS);
-    r->runner.progress = before.progress;
-    r->runner.stats = before.stats;
-    r->stale = result != VPL_SUCCESS;
+    const vplResult result = refresh(r, VPL_STAGE_VIRTUAL_LIGHTS);
+    r->runner.progress = progress;
     return result;
+}
+
+vplResult vplRenderer_RefreshPatches(vplRenderer* r)
+{
+    return r->stale && r->plan->options.method == VPL_METHOD_RADIOSITY ? refresh(r, VPL_STAGE_SOLUTION)
+                                                                       : VPL_SUCCESS;
 }
 
 vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)

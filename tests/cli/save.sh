@@ -86,8 +86,8 @@ succeeds APlanOfPatchesIsReplayed "$vpl" render "$closed" --plan "$out/plan.json
 check ReplayedPatchesAreTheSame cmp "$out/a.pfm" "$out/c.pfm"
 rm "$out/patches" "$out/plan.json" "$out"/[abc].pfm
 # Pictures for a time are saved, too, and without any more time they stay as they are. The first plan for a time is small, and
-# a state does not keep its picture; a second is enough to get beyond it on a busy machine.
-succeeds AStateOfATime "$vpl" render "$closed" --size 96x54 --budget 1000 --quiet -o "$out/a.pfm" --checkpoint "$out/timed"
+# a state does not keep its picture; three seconds are enough to get beyond it on a busy machine.
+succeeds AStateOfATime "$vpl" render "$closed" --size 96x54 --budget 3000 --quiet -o "$out/a.pfm" --checkpoint "$out/timed"
 succeeds ATimeIsResumed "$vpl" render "$closed" --size 96x54 --budget 1 --quiet -o "$out/b.pfm" --resume "$out/timed"
 check WithoutMoreTimeThePictureStays cmp "$out/a.pfm" "$out/b.pfm"
 rm "$out/timed" "$out"/[ab].pfm

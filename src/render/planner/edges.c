@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "render/planner/edges.h"
 
-#include "reference/sparse_paths.h"
 #include "render/planner/contrast.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -97,8 +96,8 @@ vplResult vplEdges_Create(const vplRun* run, const vplImage* picture, int most, 
 
 vplResult vplEdges_Refine(const vplRun* run, vplEdges* e, int paths)
 {
-    return vplSparsePaths_Trace(&e->paths, (paths + 1) / 2 - e->paths.done,
-                                (vplProgressRange){run->progress, run->runner, 0, 1});
+    return vplTraceGuided(run, &e->paths, (paths + 1) / 2 - e->paths.done,
+                          (vplProgressRange){run->progress, run->runner, 0, 1});
 }
 
 void vplEdges_Destroy(vplEdges* e)

@@ -115,6 +115,7 @@ static int countTruthPixels(const vplRenderer* r)
 vplResult vplRefineTruth(vplRenderer* r)
 {
     const double spread = r->judged.spread, start = vplClockMs();
+    TRY(vplRenderer_RefreshPatches(r));
     TRY(vplTruth_Refine(&r->runner.run, r->truth));
     r->spreadBefore = spread;
     vplRun_AddTime(&r->runner.run, "truth", start);
@@ -158,6 +159,7 @@ vplResult vplWidenTruth(vplRenderer* r)
     vplImage* image = NULL;
     vplTruth* wider;
     const double start = vplClockMs();
+    TRY(vplRenderer_RefreshPatches(r));
     TRY(vplRenderer_Resolve(r, &image));
     const vplResult result = createWiderTruth(r, image, countPaths(r->truth), &wider);
     vplImage_Destroy(image);
@@ -175,6 +177,7 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
 {
     vplImage* image = NULL;
     vplRun* run = &r->runner.run;
+    TRY(vplRenderer_RefreshPatches(r));
     vplResult result = vplRenderer_Resolve(r, &image);
     const double start = vplClockMs();
     if (result == VPL_SUCCESS && r->truth == NULL) {

@@ -4,7 +4,6 @@
 #include "render/planner/truth.h"
 
 #include "base/rng.h"
-#include "reference/sparse_paths.h"
 #include "render/planner/contrast.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -130,8 +129,8 @@ vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, int count,
     TRY(vplTruth_Open(run, pixels < count ? pixels : count, &t));
     const vplRandom4 r = vplRandomAt(t->paths.scene.def.seed, TRUTH_STREAM, 0);
     t->paths.count = choosePixels(t, picture, t->paths.count, (double)vplUnitFloat(r.v[0]));
-    const vplResult result = vplSparsePaths_Trace(&t->paths, VPL_FIRST_TRUTH_PATHS / 2,
-                                                  (vplProgressRange){run->progress, run->runner, 1, 1});
+    const vplResult result = vplTraceGuided(run, &t->paths, VPL_FIRST_TRUTH_PATHS / 2,
+                                            (vplProgressRange){run->progress, run->runner, 1, 1});
     if (result != VPL_SUCCESS) {
         vplTruth_Destroy(t);
         return result;
@@ -150,8 +149,8 @@ void vplTruth_Destroy(vplTruth* truth)
 
 vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth)
 {
-    return vplSparsePaths_Trace(&truth->paths, truth->paths.done,
-                                (vplProgressRange){run->progress, run->runner, 1, 1});
+    return vplTraceGuided(run, &truth->paths, truth->paths.done,
+                          (vplProgressRange){run->progress, run->runner, 1, 1});
 }
 
 int vplTruth_Paths(const vplTruth* truth)

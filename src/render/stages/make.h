@@ -3,7 +3,7 @@
 #ifndef VPL_RENDER_STAGES_MAKE_H
 #define VPL_RENDER_STAGES_MAKE_H
 
-#include "reference/path_scene.h"
+#include "reference/sparse_paths.h"
 #include "render/stage.h"
 
 typedef vplResult vplMakeFcn(const vplRun* run, void** resultOut);
@@ -86,6 +86,13 @@ vplResult vplFindLightVertices(const vplRun* run);
 
 // The most vertices of a light path: as the options say, or as the result of VPL_STAGE_LIGHT_PATHS decides; 1 without either.
 int vplCountLightVertices(const vplRun* run);
+
+// Makes a guide of paths from the patches of the run, in the arena; NULL where the plan has no form factors of all pairs. The results of its
+// stages must outlive the guide. (path_guide.c)
+vplResult vplMakePathGuide(const vplRun* run, vplArena* arena, const vplPathGuide** guideOut);
+
+// As vplSparsePaths_Trace, with paths that the patches of the run guide where that is a gain. (path_guide.c)
+vplResult vplTraceGuided(const vplRun* run, vplSparsePaths* paths, int each, vplProgressRange progress);
 
 // The mean of all paths so far.
 vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
