@@ -69,12 +69,14 @@ static bool makeNext(vplPathState* path, const vplLightVertex* from, uint32_t se
     const double left = vplDot(direction, from->at.normal), flat = -vplDot(direction, to->at.normal),
                  cosine = -vplDot(direction, to->at.shading);
     const double reflection = vplDensityOfReflection(cosine, left, hit.t); // from here to the vertex before
-    const double density = vplPathVertex_Density(s, &to->at, from->at.place, reflection);
+    const bool guided = to->at.guided > 0;
+    const double density =
+        guided ? vplPathVertex_Density(s, &to->at, from->at.place, reflection) : reflection;
     const vplRgb kept = vplRgbScale(1 / chance, to->at.rho);
     *reflected = vplRgbMul(*reflected, kept);
     to->carried = vplRgbMul(from->carried, kept);
     to->ratio = from->ratio * flat / cosine;
-    if (to->at.guided > 0) {
+    if (guided) {
         to->carried = vplRgbScale((float)(reflection / density), to->carried);
         to->ratio *= reflection / density;
     }
@@ -102,7 +104,8 @@ typedef struct Offer {
     int vertex;              // -1: none
 } Offer;
 
-static Offer offerOf(const vplPathState* path, const vplPathVertex* v, const vplLightPath* p, int i)
+static inline __attribute__((always_inline)) Offer offerOf(const vplPathState* path, const vplPathVertex* v,
+                                                           const vplLightPath* p, int i, bool guided)
 {
     const vplPathScene* s = path->scene;
     const vplLightVertex* l = &p->vertices[i];
@@ -115,8 +118,8 @@ static Offer offerOf(const vplPathState* path, const vplPathVertex* v, const vpl
         return o;
     }
     const double reflection = vplDensityOfReflection(cosine, o.cosine, o.distance);
-    const double density = vplPathVertex_Density(s, v, l->at.place, reflection);
-    const double share = v->guided > 0 ? reflection / density : 1;
+    const double density = guided ? vplPathVertex_Density(s, v, l->at.place, reflection) : reflection;
+    const double share = guided ? reflection / density : 1;
     const double edges =
         l->edges + vplHeuristic(s, l->ratio / density) +
         vplHeuristic(s, l->ratio * flat / cosine * share) * path->edges[s->lightVertices - 1 - i];
@@ -128,8 +131,9 @@ static Offer offerOf(const vplPathState* path, const vplPathVertex* v, const vpl
     return o;
 }
 
-vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, const vplLightPath* p,
-                                  int bounce, vplRgb throughput)
+static inline __attribute__((always_inline)) vplRadiance connectTo(vplPathState* path, const vplPathVertex* v,
+                                                                   const vplLightPath* p, int bounce,
+                                                                   vplRgb throughput, bool guided)
 {
     const vplPathScene* s = path->scene;
     const vplRadiance none = {0, 0, 0};
@@ -140,7 +144,7 @@ vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, co
     Offer chosen = {.vertex = -1};
     vplReservoir reservoir = {.choice = (double)u[0]};
     for (int i = 0; i < p->count && bounce + 1 + i <= s->def.mostBounces; i++) {
-        const Offer o = offerOf(path, v, p, i);
+        const Offer o = offerOf(path, v, p, i, guided);
         if (o.power > 0 && vplReservoir_Takes(&reservoir, o.power)) {
             chosen = o;
         }
@@ -155,6 +159,14 @@ vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, co
         path->further += (light.r * throughput.r + light.g * throughput.g + light.b * throughput.b) / 3;
     }
     return light;
+}
+
+// Compiled twice, so that connections without a guide take no longer than they would if there were none.
+vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, const vplLightPath* p,
+                                  int bounce, vplRgb throughput)
+{
+    return v->guided > 0 ? connectTo(path, v, p, bounce, throughput, true)
+                         : connectTo(path, v, p, bounce, throughput, false);
 }
 
 // ---- how much light is found at later vertices of light paths
