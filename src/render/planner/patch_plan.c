@@ -140,7 +140,7 @@ static int firstGather(const vplRenderOptions* o)
 // 2.3 and 3.5 s at 20 %, the slowest 5.3, 3.4 and 3.9 s. Smaller errors need a second plan anyway.
 static const double GROUPED_ERROR = 0.08;
 
-static int firstPatches(const vplGeometry* g, double error)
+static int usualFirstPatches(const vplGeometry* g, double error)
 {
     const bool groups = g->triangleCount > VPL_FIRST_PATCHES;
     return groups && error >= GROUPED_ERROR ? 2 * VPL_FIRST_PATCHES : VPL_FIRST_PATCHES;
@@ -170,6 +170,18 @@ double vplForeseenLightRays(const vplPlan* p)
 // The error that one pass of virtual lights leaves, about; passes grow with the square of a smaller one.
 static const double ONE_PASS = 0.05;
 
+// The number of patches that come first in a scene whose light is hidden; 0: they cost too much. Tiny pictures, which have no gather, get three times
+// as many if these are cheap enough, too: at 96x54 corridor takes 1.9 s instead of 4.0 at 20 %, 13 instead of 22 at 10 % (medians of eight and of
+// four).
+static int countFirstPatches(const vplRunner* r, const vplPlan* p)
+{
+    const vplRenderOptions* o = &p->options;
+    const int usual = usualFirstPatches(r->run.results[VPL_STAGE_GEOMETRY], o->stop.maxError),
+              more = vplIsTinyPicture(o) ? 3 * VPL_FIRST_PATCHES : usual, gather = firstGather(o);
+    const double rays = VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p);
+    return fitInto(r, p, o, more, gather, rays) ? more : fitInto(r, p, o, usual, gather, rays) ? usual : 0;
+}
+
 // Patches that a plain scene begins with; 0: virtual lights are quicker.
 static double patchesOfPlain(const vplRunner* r, const vplPlan* p)
 {
@@ -186,14 +198,12 @@ bool vplChoosePatches(const vplRunner* r, vplPlan* p)
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const bool can = o->stop.maxError > 0 && canUsePatches(r, p, o);
     const double plain = can ? patchesOfPlain(r, p) : 0;
-    const int first = firstPatches(g, o->stop.maxError);
-    const bool hidden =
-        can && fitInto(r, p, o, first, firstGather(o), VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p));
-    if (plain == 0 && !hidden) {
+    const int hidden = can ? countFirstPatches(r, p) : 0;
+    if (plain == 0 && hidden == 0) {
         return false;
     }
     o->method = VPL_METHOD_RADIOSITY;
-    o->radiosity.patches = plain > 0 ? (int)ceil(plain) : first;
+    o->radiosity.patches = plain > 0 ? (int)ceil(plain) : hidden;
     if (plain > 0) {
         vplDecide(p, "method", "light that patches exchange has no noise, and %d triangles need few",
                   g->triangleCount);
