@@ -474,7 +474,7 @@ TEST(ATruthWithMorePixelsIsSaved, 2, SLOW)
         assert_false(done);
     }
     for (int i = 0; i < 2; i++) { // a few of the first paths through more pixels would tell less
-        assert_int_equal(vplRefineTruth(r), VPL_SUCCESS);
+        assert_int_equal(vplRefineTruth(r, 1), VPL_SUCCESS);
     }
     const int pixels = vplTruth_CountPixels(r->truth), paths = vplTruth_Paths(r->truth);
     assert_int_equal(vplWidenTruth(r), VPL_SUCCESS);

@@ -156,8 +156,8 @@ void vplJudgePicture(vplRenderer* renderer, const vplImage* picture);
 // plan depends on it, so that a few paths are not enough.
 vplResult vplJudge(vplRenderer* renderer, double asked, bool plansAgain, double ms);
 
-// Traces as many paths of the truth again as there are, and keeps the spread that it had.
-vplResult vplRefineTruth(vplRenderer* renderer);
+// Traces this share of as many paths of the truth again as there are, and keeps the spread that it had.
+vplResult vplRefineTruth(vplRenderer* renderer, double share);
 
 // Replaces the truth by one of about VPL_WIDER_TRUTH times as many pixels, and at least as many paths in all: where rare paths carry
 // light, the first paths alone confirmed errors that were too large (hall at 20 %: three of eleven pictures had up to 21.6 %).

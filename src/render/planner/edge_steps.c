@@ -137,7 +137,7 @@ vplResult vplProveEdges(vplRenderer* r, const vplErrorState* s, double asked, bo
         return vplRenderer_TraceEdges(r, r->edgePixels, 2 * r->edgePaths);
     }
     if (left > 0 && !noisy && vplProofOf(s, s->spread, left) < s->spent + cost) {
-        return vplRefineTruth(r);
+        return vplRefineTruth(r, 1);
     }
     if (left > 0 && !noisy && s->stuck && s->truth < s->spent + cost && vplHasRoomForWiderTruth(r)) {
         return vplWidenTruth(r);
@@ -167,7 +167,7 @@ vplResult vplFinishWay(vplRenderer* r, const vplWay* way, bool* moreOut)
         return traceEdges(r, way, moreOut);
     }
     *moreOut = true;
-    return vplRefineTruth(r);
+    return vplRefineTruth(r, 1);
 }
 
 // Edges that cost less than this share of the passes are traced before the noise is known well.

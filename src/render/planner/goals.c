@@ -112,11 +112,11 @@ static int countTruthPixels(const vplRenderer* r)
     return many ? VPL_MANY_TRUTH_PIXELS : VPL_TRUTH_PIXELS;
 }
 
-vplResult vplRefineTruth(vplRenderer* r)
+vplResult vplRefineTruth(vplRenderer* r, double share)
 {
     const double spread = r->judged.spread, start = vplClockMs();
     TRY(vplRenderer_RefreshPatches(r));
-    TRY(vplTruth_Refine(&r->runner.run, r->truth));
+    TRY(vplTruth_Refine(&r->runner.run, r->truth, share));
     r->spreadBefore = spread;
     vplRun_AddTime(&r->runner.run, "truth", start);
     return VPL_SUCCESS;
@@ -144,7 +144,7 @@ static vplResult createWiderTruth(const vplRenderer* r, const vplImage* image, d
     TRY(vplTruth_Create(run, image, vplCountWiderTruth(r), &wider));
     vplResult result = VPL_SUCCESS;
     while (result == VPL_SUCCESS && countPaths(wider) < paths) {
-        result = vplTruth_Refine(run, wider);
+        result = vplTruth_Refine(run, wider, 1);
     }
     if (result != VPL_SUCCESS) {
         vplTruth_Destroy(wider);
@@ -189,7 +189,7 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
         if (isClear(r, asked, plansAgain, r->spreadBefore) || vplClockMs() - start > ms / 3) {
             break;
         }
-        result = vplRefineTruth(r);
+        result = vplRefineTruth(r, 1);
     }
     r->judgedNoise = r->error.noise;
     vplImage_Destroy(image);

@@ -193,7 +193,7 @@ static vplResult learnMore(vplRenderer* r, const vplErrorState* s, double asked,
     const bool unknown = s->spread > KNOWN * asked * asked;
     if (unknown && !s->stuck && s->truth < paths) {
         *moreOut = true;
-        return vplRefineTruth(r);
+        return vplRefineTruth(r, 1);
     }
     if (unknown && s->stuck && s->truth < pixels && vplHasRoomForWiderTruth(r)) {
         *moreOut = true;

@@ -155,15 +155,31 @@ static vplResult lookForEdges(vplRenderer* r, double share, vplEdgeStep steps[VP
     return findKnownSteps(r, steps, countOut);
 }
 
-// Twice as many paths take the truth's time again, which must be at most this share of what is left.
-static const double SHARE_TO_KNOW = 0.8;
-
-// More paths of the truth make an unknown error known, where nothing else would use the time.
-static vplResult learnError(vplRenderer* r)
+static bool isKnown(const vplRenderer* r)
 {
-    while (isUnknown(r) && 2 * vplTruth_Paths(r->truth) <= VPL_MAX_SAMPLES &&
-           timeOfTruth(r) < SHARE_TO_KNOW * vplTimeLeft(r)) {
-        TRY(vplRefineTruth(r));
+    return !isUnknown(r);
+}
+
+// The bound is so near to the error that more paths hardly lower it.
+static const double NEAR = 1.1;
+
+static bool isSure(const vplRenderer* r)
+{
+    return r->error.bound <= NEAR * r->error.total;
+}
+
+// Of the time that is left, paths of the truth may take SHARE_TO_KNOW; fewer than LEAST_MORE of those there are would tell little.
+static const double SHARE_TO_KNOW = 0.9, LEAST_MORE = 0.1;
+
+// Traces more paths of the truth until it is enough, or until the time is over: as many again as there are, or as many as fit.
+static vplResult learnError(vplRenderer* r, bool (*isEnough)(const vplRenderer* r))
+{
+    while (!isEnough(r) && 2 * vplTruth_Paths(r->truth) <= VPL_MAX_SAMPLES) {
+        const double share = fmin(1, SHARE_TO_KNOW * vplTimeLeft(r) / fmax(1, timeOfTruth(r)));
+        if (share < LEAST_MORE) {
+            break;
+        }
+        TRY(vplRefineTruth(r, share));
         TRY(judge(r, 0));
     }
     return VPL_SUCCESS;
@@ -203,6 +219,7 @@ static vplResult traceBestEdges(vplRenderer* r, const vplEdgeStep* steps, int co
 
 // Patches have no noise. Either there are more of them, whose time grows with the square of their number and whose squared error falls with
 // it, and paths at edges follow in what is left of the time; or these paths come at once, after more paths of the truth if the error is unknown.
+// What then is left of the time goes to the truth, which lowers the bound.
 static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
 {
     static const double MORE[] = {1.5, 2, 3, 4, 6};
@@ -233,10 +250,11 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
         return vplRenderer_Replace(r, &o, false, -1);
     }
     if (isUnknown(r)) {
-        TRY(learnError(r));
+        TRY(learnError(r, isKnown));
         TRY(findKnownSteps(r, steps, &count));
     }
-    return traceBestEdges(r, steps, count);
+    TRY(traceBestEdges(r, steps, count));
+    return learnError(r, isSure);
 }
 
 vplResult vplSpendTime(vplRenderer* r, bool* doneOut)

@@ -147,10 +147,10 @@ void vplTruth_Destroy(vplTruth* truth)
     }
 }
 
-vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth)
+vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth, double share)
 {
-    return vplTraceGuided(run, &truth->paths, truth->paths.done,
-                          (vplProgressRange){run->progress, run->runner, 1, 1});
+    const int each = (int)fmax(1, share * truth->paths.done);
+    return vplTraceGuided(run, &truth->paths, each, (vplProgressRange){run->progress, run->runner, 1, 1});
 }
 
 int vplTruth_Paths(const vplTruth* truth)

@@ -44,8 +44,8 @@ vplTruthState vplTruth_GetState(const vplTruth* truth);
 vplResult vplTruth_Open(const vplRun* run, int count, vplTruth** truthOut);
 void vplTruth_SetPaths(vplTruth* truth, int each);
 
-// Traces as many paths again as there are.
-vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth);
+// Traces this share of as many paths again as there are, at least two through each pixel.
+vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth, double share);
 
 // Paths per chosen pixel so far. With few of them the error and its spread are uncertain where rare paths carry light.
 enum { VPL_SURE_PATHS = 64 };
