@@ -59,6 +59,9 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     return VPL_SUCCESS;
 }
 
+// Paths that no patches guide have about so many times the variance (bench/guide: 2 to 5).
+static const double UNGUIDED = 4;
+
 // Gives patches up. Path tracing follows if it was foreseen to be quicker than virtual lights when patches were tried. Otherwise virtual
 // lights follow, and as many pixels share them as before.
 static vplResult leavePatches(vplRenderer* r, bool* doneOut)
@@ -66,11 +69,17 @@ static vplResult leavePatches(vplRenderer* r, bool* doneOut)
     if (r->turn.rays > 0) {
         return vplGoOnWithPaths(r, doneOut);
     }
+    TRY(vplRenderer_RefreshPatches(r));
+    const bool guided = vplTruth_IsGuided(&r->runner.run, r->truth);
+    const double paths = vplErrorState_Of(r).paths;
     vplRenderOptions o = vplAskedOfLights(r);
     o.pipeline.interleave = r->turn.side > 0 ? r->turn.side : o.pipeline.interleave;
     r->turn.side = 0;
     TRY(goOnWith(r, "virtual lights", &o, doneOut));
     r->lightRays = fmax(r->lightRays, 1);
+    if (guided) {
+        r->turn.pathSquare = UNGUIDED * paths;
+    }
     return VPL_SUCCESS;
 }
 
@@ -253,6 +262,15 @@ static bool isHopeless(const vplRenderer* r, const vplErrorState* s, const vplWa
     return isinf(way->rays) || (r->lightRays > 0 && over);
 }
 
+// More patches come before patches are given up if they cost at most this share of what virtual lights are foreseen to need: 1,000 patches tell
+// little about what more of them leave (corridor at 2 %).
+static const double SHARE_TO_DIVIDE = 0.1;
+
+static bool isDividedCheaply(const vplRenderer* r, const vplErrorState* s)
+{
+    return s->finer > 0 && s->finerCost * s->spent < SHARE_TO_DIVIDE * r->lightRays;
+}
+
 // Where virtual lights may take over, a squared error is surely too large if it is above the one asked for by so many standard errors of the
 // truth. If it is not, more paths of the truth come before patches are given up or divided, as long as they are worth it. With 1 instead,
 // 32 paths through each pixel of the corridor made 1,000 patches look hopeless at 10 % (96x54, one of four seeds), and nothing else ended
@@ -282,7 +300,10 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
         return VPL_SUCCESS;
     }
     if (inVain || isHopeless(r, s, &way)) {
-        return leavePatches(r, doneOut);
+        if (inVain || !isDividedCheaply(r, s)) {
+            return leavePatches(r, doneOut);
+        }
+        way.finer = 1;
     }
     if (way.finer > 0) {
         return divide(r, &way, doneOut);

@@ -153,6 +153,11 @@ vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth, double share)
     return vplTraceGuided(run, &truth->paths, each, (vplProgressRange){run->progress, run->runner, 1, 1});
 }
 
+bool vplTruth_IsGuided(const vplRun* run, const vplTruth* truth)
+{
+    return vplGuidePays(run, &truth->paths.scene);
+}
+
 int vplTruth_Paths(const vplTruth* truth)
 {
     return 2 * truth->paths.done;

@@ -44,6 +44,9 @@ vplTruthState vplTruth_GetState(const vplTruth* truth);
 vplResult vplTruth_Open(const vplRun* run, int count, vplTruth** truthOut);
 void vplTruth_SetPaths(vplTruth* truth, int each);
 
+// True if patches guide its paths as long as the run's plan has form factors of all pairs of them. The results of its stages must be there.
+bool vplTruth_IsGuided(const vplRun* run, const vplTruth* truth);
+
 // Traces this share of as many paths again as there are, at least two through each pixel.
 vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth, double share);
 

@@ -91,6 +91,9 @@ int vplCountLightVertices(const vplRun* run);
 // stages must outlive the guide. (path_guide.c)
 vplResult vplMakePathGuide(const vplRun* run, vplArena* arena, const vplPathGuide** guideOut);
 
+// True if the scene's camera sees surfaces of the run's patches that are dark, so that a guide is a gain. (path_guide.c)
+bool vplGuidePays(const vplRun* run, const vplPathScene* scene);
+
 // As vplSparsePaths_Trace, with paths that the patches of the run guide where that is a gain. (path_guide.c)
 vplResult vplTraceGuided(const vplRun* run, vplSparsePaths* paths, int each, vplProgressRange progress);
 

@@ -109,7 +109,7 @@ static double seenIrradiance(const vplPatchSides* sides, const vplSolution* solu
 // thin-boxes 2.7, 0.30; others 1.3 to 5, 0.85 to 180 (bench/guide).
 static const double MOST_SEEN = 0.25;
 
-static bool isGuideUseful(const vplRun* run, const vplPathScene* scene)
+bool vplGuidePays(const vplRun* run, const vplPathScene* scene)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
@@ -120,7 +120,7 @@ vplResult vplTraceGuided(const vplRun* run, vplSparsePaths* paths, int each, vpl
 {
     vplArena* arena = vplArena_Create(run->context);
     vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS && hasFactors(run) && isGuideUseful(run, &paths->scene)) {
+    if (result == VPL_SUCCESS && hasFactors(run) && vplGuidePays(run, &paths->scene)) {
         result = vplMakePathGuide(run, arena, &paths->scene.def.guide);
     }
     result = result == VPL_SUCCESS ? vplSparsePaths_Trace(paths, each, progress) : result;
