@@ -84,6 +84,14 @@ succeeds PatchesAreResumed "$vpl" render $patches -o "$out/b.pfm" --resume "$out
 check ResumedPatchesAreTheSame cmp "$out/a.pfm" "$out/b.pfm"
 succeeds APlanOfPatchesIsReplayed "$vpl" render "$closed" --plan "$out/plan.json" --isa scalar -o "$out/c.pfm" --quiet
 check ReplayedPatchesAreTheSame cmp "$out/a.pfm" "$out/c.pfm"
+# Patches guide paths through edges, and are made again where a state goes on.
+guided="examples/scenes/flat.json --size 96x54 --max-error 0.1 --seed 1 --quiet"
+succeeds AStateOfGuidedPaths "$vpl" render $guided -o "$out/a.pfm" --checkpoint "$out/patches" --plan-out "$out/plan.json"
+check GuidedPathsGoThroughEdges grep -q "\"edge-pixels\": \"[1-9]" "$out/plan.json"
+succeeds GuidedPathsAreResumed "$vpl" render $guided -o "$out/b.pfm" --resume "$out/patches"
+check ResumedGuidedPathsAreTheSame cmp "$out/a.pfm" "$out/b.pfm"
+succeeds APlanOfGuidedPathsIsReplayed "$vpl" render examples/scenes/flat.json --plan "$out/plan.json" --isa scalar -o "$out/c.pfm" --quiet
+check ReplayedGuidedPathsAreTheSame cmp "$out/a.pfm" "$out/c.pfm"
 rm "$out/patches" "$out/plan.json" "$out"/[abc].pfm
 # Pictures for a time are saved, too, and without any more time they stay as they are. The first plan for a time is small, and
 # a state does not keep its picture; three seconds are enough to get beyond it on a busy machine.
