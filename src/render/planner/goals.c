@@ -184,6 +184,7 @@ vplResult vplJudge(vplRenderer* r, double asked, bool plansAgain, double ms)
         result = vplTruth_Create(run, image, countTruthPixels(r), &r->truth);
         vplRun_AddTime(run, "truth", start);
     }
+    r->guided = result == VPL_SUCCESS && vplTruth_IsGuided(run, r->truth);
     while (result == VPL_SUCCESS) {
         vplJudgePicture(r, image);
         if (isClear(r, asked, plansAgain, r->spreadBefore) || vplClockMs() - start > ms / 3) {

@@ -69,15 +69,13 @@ static vplResult leavePatches(vplRenderer* r, bool* doneOut)
     if (r->turn.rays > 0) {
         return vplGoOnWithPaths(r, doneOut);
     }
-    TRY(vplRenderer_RefreshPatches(r));
-    const bool guided = vplTruth_IsGuided(&r->runner.run, r->truth);
     const double paths = vplErrorState_Of(r).paths;
     vplRenderOptions o = vplAskedOfLights(r);
     o.pipeline.interleave = r->turn.side > 0 ? r->turn.side : o.pipeline.interleave;
     r->turn.side = 0;
     TRY(goOnWith(r, "virtual lights", &o, doneOut));
     r->lightRays = fmax(r->lightRays, 1);
-    if (guided) {
+    if (r->guided) {
         r->turn.pathSquare = UNGUIDED * paths;
     }
     return VPL_SUCCESS;
@@ -262,7 +260,7 @@ static const double SMALL_ERROR = 0.08, TIMES_OF_SMALL = 3;
 // Rays that virtual lights are foreseen to need with all that follows.
 static double raysOfLights(const vplRenderer* r, double asked)
 {
-    const bool counts = asked < SMALL_ERROR && vplTruth_IsGuided(&r->runner.run, r->truth);
+    const bool counts = asked < SMALL_ERROR && r->guided;
     return (counts ? TIMES_OF_SMALL : 1) * r->lightRays;
 }
 
@@ -302,7 +300,6 @@ static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double a
     if (r->edges != NULL) {
         return vplProveEdges(r, s, asked, moreOut);
     }
-    TRY(vplRenderer_RefreshPatches(r));
     TRY(vplFindWay(r, s, asked, &way));
     // In plain scenes, where nothing limits the rays, the truth is cheap beside the patches that it may spare.
     const bool limited = r->lightRays > 0,

@@ -47,9 +47,10 @@ vplErrorState vplErrorState_Of(const vplRenderer* r)
     s.bias = fmax(0, r->error.total * r->error.total - s.noise);
     s.square = mean > 0 ? fmax(r->judged.square / (mean * mean), s.noise) : 0;
     s.spread = mean > 0 ? r->judged.spread / (mean * mean) : 0;
-    s.truth = VPL_PATH_RAY * (double)r->judged.rays;
+    const double ray = r->guided ? VPL_GUIDED_RAY : VPL_PATH_RAY;
+    s.truth = ray * (double)r->judged.rays;
     s.truthPaths = vplTruth_Paths(r->truth);
-    s.path = VPL_PATH_RAY * r->judged.pathRays;
+    s.path = ray * r->judged.pathRays;
     s.stuck = r->judged.spread > 0.85 * r->spreadBefore && vplPixelsLimitTruth(r);
     return s;
 }
