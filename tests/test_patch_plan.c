@@ -318,7 +318,7 @@ TEST(PatchesTakeOverWhereLightsNeedFarMore, 2, SLOW)
 // A fifth of the virtual lights reaches the picture: patches come first, and more of them follow, not virtual lights.
 TEST(PatchesComeFirstWhereDoorsHideLights, 2, SLOW)
 {
-    endWithPatches(context, "examples/scenes/flat.json", 144, 0.08, 2, VPL_METHOD_RADIOSITY);
+    endWithPatches(context, "examples/scenes/flat.json", 144, 0.08, 6, VPL_METHOD_RADIOSITY);
 }
 
 // A large error that a few paths through each pixel have told may be chance. So they get more before another plan follows.
@@ -347,6 +347,76 @@ TEST(PatchesAreNotLeftForAnErrorThatMayBeChance, 2)
         assert_true((r->done == 0) == (i == 1)); // another plan
         vplRenderer_Destroy(r);
     }
+    vplScene_Destroy(scene);
+}
+
+// Where no way reaches the error, more patches come before virtual lights if they cost little beside what these are foreseen to need.
+TEST(PatchesAreDividedBeforeTheyAreGivenUp, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    vplRenderOptions o = optionsFor(0.2);
+    o.output.width = 96;
+    o.output.height = 54;
+    for (int i = 0; i < 2; i++) {
+        vplRenderer* r;
+        bool more = false, done;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        assert_true(done && r->plan->options.method == VPL_METHOD_RADIOSITY && r->lightRays > 0);
+        const int patches = r->plan->options.radiosity.patches;
+        const double mean = r->judged.mean;
+        r->edgeTries = 100; // none is left: all of the error is that of patches
+        r->error.total = 10;
+        r->judged.square = 100 * mean * mean;
+        r->judged.spread = 0.01 * mean * mean;
+        r->lightRays = (i == 0 ? 100 : 2) * VPL_MORE_PATCHES_COST * vplRaysOfPlan(r);
+        assert_int_equal(vplReconsider(r, 0.1, &done, &more), VPL_SUCCESS);
+        assert_int_equal(r->done, 0); // another plan
+        assert_true((r->plan->options.method == VPL_METHOD_RADIOSITY) == (i == 0));
+        assert_true(i == 1 || r->plan->options.radiosity.patches == VPL_MORE_PATCHES * patches);
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+}
+
+// Tiny pictures, which have no gather, begin with three times as many patches where these are cheap beside what virtual lights need.
+TEST(TinyPicturesBeginWithMorePatches, 2)
+{
+    static const struct {
+        int width;
+        double error;
+        int patches;
+    } ROWS[] = {{96, 0.05, 3000}, {96, 0.2, 1000}, {320, 0.05, 1000}};
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        vplRenderOptions o = optionsFor(ROWS[i].error);
+        o.output.width = ROWS[i].width;
+        o.output.height = ROWS[i].width * 9 / 16;
+        o = planned(scene, &o);
+        assert_int_equal(o.method, VPL_METHOD_RADIOSITY);
+        assert_int_equal(o.radiosity.patches, ROWS[i].patches);
+    }
+    vplScene_Destroy(scene);
+}
+
+// A truth gets a share of as many paths as it has, at least two through each pixel.
+TEST(ATruthIsRefinedInPart, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    vplRenderOptions o = optionsFor(0.2);
+    vplRenderer* r;
+    bool done;
+    o.output.width = 96;
+    o.output.height = 54;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    assert_true(done && r->truth != NULL);
+    const int paths = vplTruth_Paths(r->truth);
+    assert_int_equal(vplRefineTruth(r, 0.5), VPL_SUCCESS);
+    assert_int_equal(vplTruth_Paths(r->truth), paths + paths / 2);
+    assert_int_equal(vplRefineTruth(r, 0), VPL_SUCCESS);
+    assert_int_equal(vplTruth_Paths(r->truth), paths + paths / 2 + 2);
+    vplRenderer_Destroy(r);
     vplScene_Destroy(scene);
 }
 

@@ -368,6 +368,34 @@ TEST(WhatIsLeftOfTheTimeTellsAnUnknownError, 2)
     vplScene_Destroy(scene);
 }
 
+// Where no edges are traced, paths of the truth take what is left of the time, until the bound is near to the error.
+TEST(WhatIsLeftOfTheTimeLowersTheBound, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/closed-room.json");
+    vplResult result = VPL_CANCELLED; // other programs took so much of the time that the paths did not end
+    for (int i = 0; i < 6 && result == VPL_CANCELLED; i++) {
+        vplRenderer* r = rendererWithPatches(scene, 100);
+        bool done = true;
+        const double start = vplClockMs();
+        assert_int_equal(vplJudge(r, 0, true, 1), VPL_SUCCESS);
+        const double ms = fmax(500, 40 * (vplClockMs() - start));
+        const int before = vplTruth_Paths(r->truth);
+        assert_true(r->error.bound > 1.2 * r->error.total); // a few paths tell little
+        r->passMs = 3 * ms;                                 // too long for more patches
+        r->edgeTries = 100;                                 // no edges
+        setTime(r, ms);
+        result = vplSpendTime(r, &done);
+        if (result == VPL_SUCCESS) {
+            assert_true(done && r->edges == NULL);
+            assert_true(vplTruth_Paths(r->truth) >= 4 * before);
+            assert_true(r->error.bound <= 1.1 * r->error.total || vplTimeLeft(r) < 0.3 * ms);
+        }
+        vplRenderer_Destroy(r);
+    }
+    assert_int_equal(result, VPL_SUCCESS);
+    vplScene_Destroy(scene);
+}
+
 // The lamp is above a plate that shades all that the camera sees; other light finds its way around the plate. The error of a black
 // picture is not relative to anything, and the plan can be written.
 TEST(ABlackPictureHasNoRelativeError, 2)

@@ -113,7 +113,8 @@ bool vplGuidePays(const vplRun* run, const vplPathScene* scene)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
-    return seenIrradiance(sides, solution, scene) < MOST_SEEN * meanIrradiance(sides, solution);
+    return run->plan->options.method == VPL_METHOD_RADIOSITY && solution != NULL &&
+           seenIrradiance(sides, solution, scene) < MOST_SEEN * meanIrradiance(sides, solution);
 }
 
 vplResult vplTraceGuided(const vplRun* run, vplSparsePaths* paths, int each, vplProgressRange progress)
