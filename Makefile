@@ -180,6 +180,7 @@ bench: all
 	$(BUILD)/bench/edits examples/scenes/cut-outs.json
 	$(BUILD)/bench/refit
 	$(BUILD)/bench/path examples/scenes/room-area.json
+	$(BUILD)/bench/guide examples/scenes/flat.json 1000 64
 	$(BUILD)/bench/patches examples/scenes/room-area.json
 	$(BUILD)/bench/form_factors examples/scenes/room-area.json
 	$(BUILD)/bench/links examples/scenes/closed-room.json

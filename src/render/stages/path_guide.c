@@ -47,7 +47,7 @@ static double densityOf(const void* data, int side, int sender)
 static bool hasFactors(const vplRun* run)
 {
     const vplExchangeFactors* f = run->results[VPL_STAGE_FORM_FACTORS];
-    return run->plan->options.method == VPL_METHOD_RADIOSITY && f->factors != NULL &&
+    return run->plan->options.method == VPL_METHOD_RADIOSITY && f != NULL && f->factors != NULL &&
            f->factors->rows != NULL;
 }
 
