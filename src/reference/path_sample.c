@@ -69,16 +69,16 @@ static inline __attribute__((always_inline)) bool chooseWay(const vplPathState* 
                                                             int bounce, const float u[2], bool guided,
                                                             Way* way)
 {
-    float g[4];
     way->to.place = -1;
     if (guided && v->guided > 0) {
-        vplPath_Draw(path, (uint32_t)(GUIDE_SETS + bounce), g);
-    }
-    if (guided && v->guided > 0 && (double)g[0] < v->guided) {
         const vplPathGuide* guide = path->scene->def.guide;
-        way->to = guide->choose(guide->data, v->place, g + 1);
-        way->direction = vplNormalize(vplSub(way->to.position, v->hit.position));
-        return vplDot(way->direction, v->normal) > 0 && vplDot(way->direction, v->shading) > 0;
+        float g[4];
+        vplPath_Draw(path, (uint32_t)(GUIDE_SETS + bounce), g);
+        if ((double)g[0] < v->guided) {
+            way->to = guide->choose(guide->data, v->place, g + 1);
+            way->direction = vplNormalize(vplSub(way->to.position, v->hit.position));
+            return vplDot(way->direction, v->normal) > 0 && vplDot(way->direction, v->shading) > 0;
+        }
     }
     way->direction = vplSampleCosineAround(v->shading, u[0], u[1]);
     return vplDot(way->direction, v->normal) > 0;
