@@ -14,8 +14,7 @@ enum { SURE_PASSES = 5 };
 
 // ---- the next plan
 
-// Goes on with another plan, and tells the log why. The picture so far is kept until the new plan has one.
-static vplResult goOnWith(vplRenderer* r, const char* what, const vplRenderOptions* o, bool* doneOut)
+vplResult vplGoOnWith(vplRenderer* r, const char* what, const vplRenderOptions* o, bool* doneOut)
 {
     vplLog(r->runner.run.context, VPL_LOG_INFO,
            "after %d passes the noise is %.3g %% and the error about %.3g %%: goes on with %s", r->done,
@@ -29,7 +28,7 @@ vplResult vplGoOnWithPaths(vplRenderer* r, bool* doneOut)
     vplRenderOptions o = r->asked;
     o.method = VPL_METHOD_PATH;
     r->turn = (vplTurn){0};
-    return goOnWith(r, "path tracing", &o, doneOut);
+    return vplGoOnWith(r, "path tracing", &o, doneOut);
 }
 
 vplResult vplGoOnFiner(vplRenderer* r, int finer, bool* doneOut)
@@ -37,68 +36,7 @@ vplResult vplGoOnFiner(vplRenderer* r, int finer, bool* doneOut)
     vplRenderOptions o = vplAskedLikePlan(r);
     o.output.antialias = o.output.antialias < 16 && r->asked.output.antialias == 8 ? 16 : o.output.antialias;
     o.pipeline.interleave >>= finer;
-    return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
-}
-
-// Multiplies the number of patches by VPL_MORE_PATCHES: as often as the way says in plain scenes; in others once, and the rays of the
-// gather, too. Keeps the error beside edges, with which that of more patches is compared.
-static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
-{
-    int patches = r->plan->options.radiosity.patches, gather = r->asked.radiosity.gather;
-    for (int i = 0; i < way->finer && (i == 0 || r->lightRays == 0); i++) {
-        patches *= VPL_MORE_PATCHES;
-    }
-    if (gather < 0 && r->lightRays > 0 && r->plan->options.radiosity.gather > 0) {
-        gather = VPL_MORE_GATHER * r->plan->options.radiosity.gather;
-    }
-    const vplRenderOptions o = vplAskedWithPatches(r, patches, gather);
-    const double spent = vplRaysOfPlan(r);
-    TRY(goOnWith(r, "more patches", &o, doneOut));
-    r->coarserSquare = way->rest;
-    vplCountVainPatches(r, spent);
-    return VPL_SUCCESS;
-}
-
-// Paths that no patches guide have about so many times the variance (bench/guide: 2 to 5).
-static const double UNGUIDED = 4;
-
-// Gives patches up. Path tracing follows if it was foreseen to be quicker than virtual lights when patches were tried. Otherwise virtual
-// lights follow, and as many pixels share them as before.
-static vplResult leavePatches(vplRenderer* r, bool* doneOut)
-{
-    if (r->turn.rays > 0) {
-        return vplGoOnWithPaths(r, doneOut);
-    }
-    const double paths = vplErrorState_Of(r).paths;
-    vplRenderOptions o = vplAskedOfLights(r);
-    o.pipeline.interleave = r->turn.side > 0 ? r->turn.side : o.pipeline.interleave;
-    r->turn.side = 0;
-    TRY(goOnWith(r, "virtual lights", &o, doneOut));
-    r->lightRays = fmax(r->lightRays, 1);
-    if (r->guided) {
-        r->turn.pathSquare = UNGUIDED * paths;
-    }
-    return VPL_SUCCESS;
-}
-
-// More patches are worth their time if their number is at least this factor above that of the plan before.
-static const double WORTHWHILE = 1.3;
-
-vplResult vplFitPatches(vplRenderer* r, double share)
-{
-    const vplRenderOptions* kept = r->kept.plan != NULL ? &r->kept.plan->options : &r->asked;
-    const int patches = (int)(share * r->plan->options.radiosity.patches);
-    if (kept->method == VPL_METHOD_RADIOSITY && patches > WORTHWHILE * kept->radiosity.patches) {
-        const vplRenderOptions fewer = vplAskedWithPatches(r, patches, r->plan->options.radiosity.gather);
-        vplLog(r->runner.run.context, VPL_LOG_INFO, "the time is enough for %d patches", patches);
-        return vplRenderer_Plan(r, &fewer, false);
-    }
-    const vplRenderOptions o = vplAskedOfLights(r);
-    vplLog(r->runner.run.context, VPL_LOG_INFO,
-           "more patches would take too long: goes on with virtual lights");
-    TRY(vplRenderer_Plan(r, &o, false));
-    r->lightRays = fmax(r->lightRays, 1);
-    return VPL_SUCCESS;
+    return vplGoOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }
 
 // After some passes the planner tries patches only if the error is still more than so many times the one asked for. If it is less,
@@ -118,7 +56,7 @@ static vplResult tryPatches(vplRenderer* r, double lights, double paths, double 
     const vplPipelineOptions* pipeline = &r->plan->options.pipeline;
     const int side = pipeline->kind == VPL_ACCUMULATE_INTERLEAVED ? pipeline->interleave : 0;
     const vplRenderOptions o = vplAskedWithPatches(r, VPL_FIRST_PATCHES, r->asked.radiosity.gather);
-    TRY(goOnWith(r, "light that patches exchange", &o, doneOut));
+    TRY(vplGoOnWith(r, "light that patches exchange", &o, doneOut));
     r->lightRays = otherwise;
     r->turn.rays = paths < lights ? paths : 0;
     r->turn.side = side;
@@ -133,7 +71,7 @@ static vplResult addLights(vplRenderer* r, bool* doneOut)
     o.method = VPL_METHOD_KELLER;
     o.lights.shadows = r->plan->options.lights.shadows;
     o.particles.count = 1000;
-    return goOnWith(r, "reflected light", &o, doneOut);
+    return vplGoOnWith(r, "reflected light", &o, doneOut);
 }
 
 // Paths that need so many times the rays of the way that they were preferred to are given up. Rare paths that carry much light
@@ -163,7 +101,7 @@ vplResult vplTurnBack(vplRenderer* r, double asked, bool* doneOut)
 
 // The truth is known well enough for a decision where its standard error is this share of the squared error that was asked for;
 // and more paths of it are not worth it where they would cost more than this share of what is foreseen.
-static const double KNOWN = 0.1, WORTH = 0.1, WORTH_OF_PATCHES = 0.3;
+static const double KNOWN = 0.1, WORTH = 0.1;
 
 vplResult vplReconsiderEarly(vplRenderer* r, double asked, bool* doneOut, bool* moreOut)
 {
@@ -191,11 +129,8 @@ static vplResult tracePaths(vplRenderer* r, const vplErrorState* s, const vplWay
 // instead of 12.
 static const double KNOWING = 0.5, UNSURE = 0.1;
 
-// Improves the truth if it does not tell the error well enough for a decision: by more paths per pixel, if it has cost less than `paths`
-// rays so far; or, if more paths no longer reduce its spread because few pixels have most of the error, by more pixels, if it has cost less
-// than `pixels` rays. *moreOut: the truth was improved, and the picture must be judged again.
-static vplResult learnMore(vplRenderer* r, const vplErrorState* s, double asked, double paths, double pixels,
-                           bool* moreOut)
+vplResult vplLearnMore(vplRenderer* r, const vplErrorState* s, double asked, double paths, double pixels,
+                       bool* moreOut)
 {
     const bool unknown = s->spread > KNOWN * asked * asked;
     if (unknown && !s->stuck && s->truth < paths) {
@@ -222,7 +157,7 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     TRY(vplFindWay(r, s, asked, &way));
     const double paths = s->paths / (0.9 * asked * asked);
     const double next = fmin(way.rays, paths), half = 0.5 * s->spent; // more passes come first
-    TRY(learnMore(r, s, asked, fmin(WORTH * next, half), 0.5 * fmin(next, half), moreOut));
+    TRY(vplLearnMore(r, s, asked, fmin(WORTH * next, half), 0.5 * fmin(next, half), moreOut));
     if (*moreOut) {
         return VPL_SUCCESS;
     }
@@ -248,86 +183,6 @@ static vplResult reach(vplRenderer* r, const vplErrorState* s, double asked, boo
     return vplFinishWay(r, &way, moreOut);
 }
 
-// A way with patches may need so many times the rays that virtual lights are foreseen to need: in scenes of small triangles the error of
-// 1,000 patches predicts too many patches (furnished: 9,000 where 3,000 leave less than 10 %).
-static const double HOPE = 2;
-
-// The rays that virtual lights are foreseen to need are those of their passes. For small errors paths that prove the error and paths through edges need
-// more, and no patches guide these: flat at 5 % takes 26, 15 and 100 s if this is not counted, 17, 16 and 18 s if it is (96x54, three seeds). For an
-// error of 20 % shade would take 20 s instead of 4.
-static const double SMALL_ERROR = 0.08, TIMES_OF_SMALL = 3;
-
-// Rays that virtual lights are foreseen to need with all that follows.
-static double raysOfLights(const vplRenderer* r, double asked)
-{
-    const bool counts = asked < SMALL_ERROR && r->guided;
-    return (counts ? TIMES_OF_SMALL : 1) * r->lightRays;
-}
-
-// True if the planner gives patches up: no way reaches the error, or virtual lights are foreseen to need far fewer rays.
-static bool isHopeless(const vplRenderer* r, const vplErrorState* s, double asked, const vplWay* way)
-{
-    const double lights = raysOfLights(r, asked);
-    const bool over =
-        way->rays > HOPE * lights || (way->finer > 0 && VPL_MORE_PATCHES_COST * s->spent > lights);
-    return isinf(way->rays) || (lights > 0 && over);
-}
-
-// More patches come before patches are given up if they cost at most this share of what virtual lights are foreseen to need: 1,000 patches tell
-// little about what more of them leave (corridor at 2 %).
-static const double SHARE_TO_DIVIDE = 0.1;
-
-static bool isDividedCheaply(const vplRenderer* r, const vplErrorState* s)
-{
-    return s->finer > 0 && s->finerCost * s->spent < SHARE_TO_DIVIDE * r->lightRays;
-}
-
-// Where virtual lights may take over, a squared error is surely too large if it is above the one asked for by so many standard errors of the
-// truth. If it is not, more paths of the truth come before patches are given up or divided, as long as they are worth it. With 1 instead,
-// 32 paths through each pixel of the corridor made 1,000 patches look hopeless at 10 % (96x54, one of four seeds), and nothing else ended
-// within 150 s; with more paths the picture took 44 s.
-static const double SURE_ERRORS = 2;
-
-// More patches come before pixels at edges are traced if they cost at most this share of that. Corridor at 5 % would trace 16,384 paths through each of
-// 819 pixels beside 3,000 patches, and then half as many more (200 s were not enough at 96x54).
-static const double SHARE_OF_EDGES = 0.2;
-
-// Radiosity has no passes that add up: pixels at edges are traced, or the patches are made smaller, or virtual lights take over.
-static vplResult reachByPatches(vplRenderer* r, const vplErrorState* s, double asked, bool* doneOut,
-                                bool* moreOut)
-{
-    vplWay way;
-    if (r->edges != NULL) {
-        return vplProveEdges(r, s, asked, moreOut);
-    }
-    TRY(vplFindWay(r, s, asked, &way));
-    // In plain scenes, where nothing limits the rays, the truth is cheap beside the patches that it may spare.
-    const bool limited = r->lightRays > 0,
-               far = way.rest - (limited ? SURE_ERRORS * s->spread : 0) > asked * asked;
-    const bool inVain = r->coarserSquare > 0 && far && way.rest > 0.5 * r->coarserSquare;
-    // Where there is no way, the truth may cost what virtual lights do.
-    const double rays = limited && isinf(way.rays) ? r->lightRays : way.rays;
-    const double next = limited && s->finer > 0 ? fmin(rays, s->finerCost * s->spent) : rays;
-    if (!limited || inVain || !far) {
-        TRY(learnMore(r, s, asked, WORTH_OF_PATCHES * next, limited ? 0.5 * next : 0, moreOut));
-    }
-    if (*moreOut) {
-        return VPL_SUCCESS;
-    }
-    if (inVain || isHopeless(r, s, asked, &way)) {
-        if (inVain || !isDividedCheaply(r, s)) {
-            return leavePatches(r, doneOut);
-        }
-        way.finer = 1;
-    }
-    const bool dear = way.pixels > 0 && s->finerCost * s->spent < SHARE_OF_EDGES * way.rays;
-    if (way.finer > 0 || (limited && s->finer > 0 && dear)) {
-        way.finer = way.finer > 0 ? way.finer : 1;
-        return divide(r, &way, doneOut);
-    }
-    return vplFinishWay(r, &way, moreOut);
-}
-
 vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut, bool* moreOut)
 {
     const vplErrorState s = vplErrorState_Of(r);
@@ -335,7 +190,7 @@ vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut, bool* moreO
         return addLights(r, doneOut);
     }
     if (r->asked.method == VPL_METHOD_AUTO && r->plan->options.method == VPL_METHOD_RADIOSITY) {
-        return reachByPatches(r, &s, asked, doneOut, moreOut);
+        return vplReachByPatches(r, &s, asked, doneOut, moreOut);
     }
     if (r->asked.method == VPL_METHOD_AUTO) {
         return reach(r, &s, asked, doneOut, moreOut);

@@ -71,6 +71,21 @@ vplResult vplProveEdges(vplRenderer* renderer, const vplErrorState* state, doubl
 // that the error is met.
 vplResult vplFinishWay(vplRenderer* renderer, const vplWay* way, bool* moreOut);
 
+// Goes on with another plan, and tells the log that it has `what`. The picture so far is kept until the new plan has one.
+vplResult vplGoOnWith(vplRenderer* renderer, const char* what, const vplRenderOptions* options,
+                      bool* doneOut);
+
+// Improves the truth if it does not tell the error well enough for a decision: by more paths per pixel, if it has cost less than `paths`
+// rays so far; or, if more paths no longer reduce its spread because few pixels have most of the error, by more pixels, if it has cost less
+// than `pixels` rays. *moreOut: the truth was improved, and the picture must be judged again.
+vplResult vplLearnMore(vplRenderer* renderer, const vplErrorState* state, double asked, double paths,
+                       double pixels, bool* moreOut);
+
+// Radiosity has no passes that add up: pixels at edges are traced, or the patches are made smaller, or virtual lights take over.
+// (reconsider_patches.c)
+vplResult vplReachByPatches(vplRenderer* renderer, const vplErrorState* state, double asked, bool* doneOut,
+                            bool* moreOut);
+
 // Go on with path tracing, and with the plan made finer `finer` times. The picture so far is kept until the new plan has one.
 vplResult vplGoOnWithPaths(vplRenderer* renderer, bool* doneOut);
 vplResult vplGoOnFiner(vplRenderer* renderer, int finer, bool* doneOut);
