@@ -321,19 +321,27 @@ TEST(PatchesComeFirstWhereDoorsHideLights, 2, SLOW)
     endWithPatches(context, "examples/scenes/flat.json", 144, 0.08, 6, VPL_METHOD_RADIOSITY);
 }
 
+// A renderer whose picture of hidden light was made by patches at once, with an error below 20 %.
+static vplRenderer* rendererOfHiddenLight(const vplScene* scene)
+{
+    vplRenderOptions o = optionsFor(0.2);
+    vplRenderer* r;
+    bool done;
+    o.output.width = 96;
+    o.output.height = 54;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    assert_true(done && r->plan->options.method == VPL_METHOD_RADIOSITY && r->lightRays > 0);
+    return r;
+}
+
 // A large error that a few paths through each pixel have told may be chance. So they get more before another plan follows.
 TEST(PatchesAreNotLeftForAnErrorThatMayBeChance, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/flat.json");
-    vplRenderOptions o = optionsFor(0.2);
-    o.output.width = 96;
-    o.output.height = 54;
     for (int i = 0; i < 2; i++) {
-        vplRenderer* r;
+        vplRenderer* r = rendererOfHiddenLight(scene);
         bool more = false, done;
-        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-        assert_true(done && r->plan->options.method == VPL_METHOD_RADIOSITY && r->lightRays > 0);
         const double mean = r->judged.mean;
         const int paths = vplTruth_Paths(r->truth);
         r->judged.rays = 1;
@@ -354,15 +362,9 @@ TEST(PatchesAreNotLeftForAnErrorThatMayBeChance, 2)
 TEST(PatchesAreDividedBeforeTheyAreGivenUp, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/flat.json");
-    vplRenderOptions o = optionsFor(0.2);
-    o.output.width = 96;
-    o.output.height = 54;
     for (int i = 0; i < 2; i++) {
-        vplRenderer* r;
+        vplRenderer* r = rendererOfHiddenLight(scene);
         bool more = false, done;
-        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-        assert_true(done && r->plan->options.method == VPL_METHOD_RADIOSITY && r->lightRays > 0);
         const int patches = r->plan->options.radiosity.patches;
         const double mean = r->judged.mean;
         r->edgeTries = 100; // none is left: all of the error is that of patches
@@ -403,14 +405,8 @@ TEST(TinyPicturesBeginWithMorePatches, 2)
 TEST(ATruthIsRefinedInPart, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/flat.json");
-    vplRenderOptions o = optionsFor(0.2);
-    vplRenderer* r;
-    bool done;
-    o.output.width = 96;
-    o.output.height = 54;
-    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
-    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
-    assert_true(done && r->truth != NULL);
+    vplRenderer* r = rendererOfHiddenLight(scene);
+    assert_true(r->truth != NULL);
     const int paths = vplTruth_Paths(r->truth);
     assert_int_equal(vplRefineTruth(r, 0.5), VPL_SUCCESS);
     assert_int_equal(vplTruth_Paths(r->truth), paths + paths / 2);

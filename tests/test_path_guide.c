@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-// ---- a guide that knows nothing: any point of any triangle sends light, and the front of each third triangle receives none
+// ---- a guide that knows nothing: any point of any triangle sends light; each third place receives none, and each seventh triangle is no place
 
 static int findTriangle(const void* data, const vplHit* hit, vplVec3 direction)
 {
@@ -22,7 +22,7 @@ static int findTriangle(const void* data, const vplHit* hit, vplVec3 direction)
     return hit->triangle % 7 == 6 ? -1 : 2 * hit->triangle + back;
 }
 
-static bool isThird(const void* data, int place)
+static bool receivesLight(const void* data, int place)
 {
     (void)data;
     return place % 3 != 0;
@@ -49,7 +49,7 @@ static void compareMeans(const vplScene* scene, const vplPathDef* def, int row)
 {
     vplGeometry* g;
     assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
-    const vplPathGuide guide = {findTriangle, isThird, chooseAnywhere, densityAnywhere, g};
+    const vplPathGuide guide = {findTriangle, receivesLight, chooseAnywhere, densityAnywhere, g};
     vplPathDef guided = *def;
     vplPathStats stats, other;
     guided.guide = &guide;

@@ -335,6 +335,16 @@ TEST(MorePatchesFollowWhileThereIsTime, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
+// Judges a picture by patches with the first paths of the truth. Returns a time, ms, in which many more of them fit, but no other patches.
+static double judgeOnce(vplRenderer* r)
+{
+    const double start = vplClockMs();
+    assert_int_equal(vplJudge(r, 0, true, 1), VPL_SUCCESS);
+    const double ms = fmax(500, 40 * (vplClockMs() - start));
+    r->passMs = 3 * ms; // too long for more patches
+    return ms;
+}
+
 // Paths of the truth whose halves contradict each other tell no error. More of them take what is left of the time.
 TEST(WhatIsLeftOfTheTimeTellsAnUnknownError, 2)
 {
@@ -343,12 +353,9 @@ TEST(WhatIsLeftOfTheTimeTellsAnUnknownError, 2)
     for (int i = 0; i < 6 && result == VPL_CANCELLED; i++) {
         vplRenderer* r = rendererWithPatches(scene, 100);
         bool done = true;
-        const double start = vplClockMs();
-        assert_int_equal(vplJudge(r, 0, true, 1), VPL_SUCCESS);
+        const double ms = judgeOnce(r);
         assert_true((double)r->judged.rays * VPL_PATH_RAY >
                     0.25 * vplRaysOfPlan(r)); // no judgement refines it by itself
-        const double ms = fmax(500, 40 * (vplClockMs() - start));
-        r->passMs = 3 * ms; // too long for more patches
         const vplTruthState state = vplTruth_GetState(r->truth);
         for (int k = 0; k < state.count; k++) {
             state.pixels[k].sums[0].g += (k % 2 == 0 ? 1e6 : -1e6) * r->judged.mean;
@@ -376,12 +383,9 @@ TEST(WhatIsLeftOfTheTimeLowersTheBound, 2)
     for (int i = 0; i < 6 && result == VPL_CANCELLED; i++) {
         vplRenderer* r = rendererWithPatches(scene, 100);
         bool done = true;
-        const double start = vplClockMs();
-        assert_int_equal(vplJudge(r, 0, true, 1), VPL_SUCCESS);
-        const double ms = fmax(500, 40 * (vplClockMs() - start));
+        const double ms = judgeOnce(r);
         const int before = vplTruth_Paths(r->truth);
         assert_true(r->error.bound > 1.2 * r->error.total); // a few paths tell little
-        r->passMs = 3 * ms;                                 // too long for more patches
         r->edgeTries = 100;                                 // no edges
         setTime(r, ms);
         result = vplSpendTime(r, &done);

@@ -161,7 +161,7 @@ static inline __attribute__((always_inline)) vplRadiance connectTo(vplPathState*
     return light;
 }
 
-// Compiled twice, so that connections without a guide take no longer than they would if there were none.
+// The connection is compiled twice, so that the guide costs other paths no time.
 vplRadiance vplConnectToLightPath(vplPathState* path, const vplPathVertex* v, const vplLightPath* p,
                                   int bounce, vplRgb throughput)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is known beforehand about where light comes from, by which paths from the camera choose directions.
+// A guide knows where the light of a surface comes from. Paths from the camera choose directions by it.
 // Based on: Eric P. Lafortune and Yves D. Willems, A 5D Tree to Reduce the Variance of Monte Carlo Ray Tracing, Rendering Techniques 1995:
 // directions are chosen by an approximation of the light that arrives, or by the reflection, and weighted by the density of both.
 #ifndef VPL_REFERENCE_PATH_GUIDE_H
@@ -13,14 +13,14 @@ typedef struct vplGuidePoint {
     vplVec3 position;
 } vplGuidePoint;
 
-// Surfaces are divided into places, which send light to each other. Any guide leaves the mean of paths as it is, and a good one reduces their
-// variance. Light that no place sends, as that of the sky, is found by reflections.
+// Surfaces are divided into places, for example patches, which send light to each other. The mean of paths is the same with any guide; a good one
+// reduces their variance. Light that no place sends, as that of the sky, is found by reflections.
 typedef struct vplPathGuide {
     // The place of a point that a ray in `direction` has hit; negative: of none.
     int (*find)(const void* data, const vplHit* hit, vplVec3 direction);
     // True if light is known to come to the place from others.
     bool (*knows)(const void* data, int place);
-    // Chooses a point that sends light to the place, which it must know, by three numbers in [0, 1).
+    // Chooses a point that sends light to the place by three random numbers in [0, 1). `knows` must be true for the place.
     vplGuidePoint (*choose)(const void* data, int place, const float u[3]);
     // The density, per square metre, with which it chooses any point of `sender`.
     double (*density)(const void* data, int place, int sender);

@@ -84,7 +84,7 @@ static inline __attribute__((always_inline)) bool chooseWay(const vplPathState* 
     return vplDot(way->direction, v->normal) > 0;
 }
 
-// False where something is before the point to which the path should go. The guide's density counts points that are seen only.
+// Returns false where another surface hides the chosen point: the guide's density is that of visible points only.
 static bool isReached(const Way* way, const vplPathVertex* v)
 {
     return way->to.place < 0 || (v->place == way->to.place && v->hit.triangle == way->to.triangle);
@@ -154,7 +154,7 @@ static inline __attribute__((always_inline)) void followBounces(vplPathState* pa
     }
 }
 
-// Compiled for themselves, so that paths without a guide take no longer than they would if there were none.
+// Guided paths are compiled as a function of their own, so that the guide costs other paths no time.
 static __attribute__((noinline)) void followGuided(vplPathState* path, vplPathVertex vertex,
                                                    vplVec3 direction, const vplLightPath* light,
                                                    vplRadiance* sum)

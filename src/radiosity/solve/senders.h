@@ -13,8 +13,8 @@ typedef struct vplSenders {
     float* upTo; // [side][block]: the light that the side receives from this block and those before it
 } vplSenders;
 
-// Form factors must be those of this process alone. `sent`: radiosity of each side, W/m^2; it is copied. The arena owns the result, whose
-// memory is a 32nd of that of the form factors.
+// `sent`: radiosity of each side, W/m^2; it is copied. The form factors must not be shared by a team. The arena owns the result, which takes a
+// 32nd of the memory of the form factors.
 vplResult vplSenders_Create(vplArena* arena, const vplTransport* transport, const vplRgb* sent,
                             vplSenders* sendersOut);
 

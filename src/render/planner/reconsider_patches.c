@@ -26,7 +26,7 @@ static vplResult divide(vplRenderer* r, const vplWay* way, bool* doneOut)
     return VPL_SUCCESS;
 }
 
-// Paths that no patches guide have about so many times the variance (bench/guide: 2 to 5).
+// The variance of unguided paths over that of guided ones, about (bench/guide: 2 to 5).
 static const double UNGUIDED = 4;
 
 // Gives patches up. Path tracing follows if it was foreseen to be quicker than virtual lights when patches were tried. Otherwise virtual

@@ -168,7 +168,7 @@ static bool isSure(const vplRenderer* r)
     return r->error.bound <= NEAR * r->error.total;
 }
 
-// Of the time that is left, paths of the truth may take SHARE_TO_KNOW; fewer than LEAST_MORE of those there are would tell little.
+// Further paths of the truth may take SHARE_TO_KNOW of the time that is left. If fewer fit than LEAST_MORE of those that are done, none is traced.
 static const double SHARE_TO_KNOW = 0.9, LEAST_MORE = 0.1;
 
 // Traces more paths of the truth until it is enough, or until the time is over: as many again as there are, or as many as fit.
@@ -219,7 +219,7 @@ static vplResult traceBestEdges(vplRenderer* r, const vplEdgeStep* steps, int co
 
 // Patches have no noise. Either there are more of them, whose time grows with the square of their number and whose squared error falls with
 // it, and paths at edges follow in what is left of the time; or these paths come at once, after more paths of the truth if the error is unknown.
-// What then is left of the time goes to the truth, which lowers the bound.
+// Further paths of the truth use the rest of the time; they lower the bound of the error.
 static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
 {
     static const double MORE[] = {1.5, 2, 3, 4, 6};

@@ -47,7 +47,7 @@ void vplTruth_SetPaths(vplTruth* truth, int each);
 // True if patches guide its paths as long as the run's plan has form factors of all pairs of them. The results of its stages must be there.
 bool vplTruth_IsGuided(const vplRun* run, const vplTruth* truth);
 
-// Traces this share of as many paths again as there are, at least two through each pixel.
+// Traces `share` times as many paths as there are so far, in addition to these; at least two through each pixel.
 vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth, double share);
 
 // Paths per chosen pixel so far. With few of them the error and its spread are uncertain where rare paths carry light.

@@ -103,10 +103,10 @@ static double seenIrradiance(const vplPatchSides* sides, const vplSolution* solu
     return count > 0 ? sum / count : 0;
 }
 
-// Guided paths need a half more time to twice as much. They pay where the picture shows surfaces that are darker than others, so that reflections seldom
-// lead to where the light is: variance times time with the guide over that without, and the irradiance of what is seen over that of all, with 3,000
-// patches: corridor 0.44, 0.001; hall 0.65, 0.02; door-ajar 0.71, 0.03; shade 0.75, 0.05; flat 0.73, 0.12; six-rooms 0.79, 0.17; furnished 1.0, 0.17;
-// thin-boxes 2.7, 0.30; others 1.3 to 5, 0.85 to 180 (bench/guide).
+// A guided path takes 1.2 to 2.6 times the time of another. That pays where the visible surfaces are darker than the rest of the scene, because
+// reflections then seldom lead to the light. Variance times time with the guide over that without, and irradiance of visible surfaces over that of
+// all, with 3,000 patches: corridor 0.45, 0.001; hall 0.52, 0.02; door-ajar 0.56, 0.03; shade 0.75, 0.05; flat 0.73, 0.12; six-rooms 0.83, 0.17;
+// furnished 1.0, 0.17; thin-boxes 2.7, 0.30; others 1.3 to 5, 0.85 to 180 (bench/guide).
 static const double MOST_SEEN = 0.25;
 
 bool vplGuidePays(const vplRun* run, const vplPathScene* scene)
