@@ -2,6 +2,7 @@
 // Tests of elementary functions, random numbers, sequences and warps. Covers extremes X043 to X046.
 #include "test.h"
 
+#include "base/hash.h"
 #include "base/rng.h"
 #include "math/matrix.h"
 #include "math/sampling.h"
@@ -236,5 +237,29 @@ TEST_ALONE(StreamsAreIndependent)
         for (int i = 0; i < 3; i++) {
             assertNear(products[i], 0, 0.003, "covariance", i);
         }
+    }
+}
+
+// The numbers of points on a floor are uniform; those of neighbours and those of two seeds are uncorrelated.
+TEST_ALONE(NumbersOfPositionsAreIndependent)
+{
+    enum { SIDE = 200 };
+    double mean = 0, products[3] = {0};
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float x = 0.01f * (float)(i % SIDE), z = 0.01f * (float)(i / SIDE);
+        const uint64_t hashes[4] = {vplHashPosition(1, x, 0, z), vplHashPosition(1, x + 0.01f, 0, z),
+                                    vplHashPosition(1, x, 0, z + 0.01f), vplHashPosition(2, x, 0, z)};
+        double u[4];
+        for (int k = 0; k < 4; k++) {
+            u[k] = 0x1p-64 * (double)hashes[k] - 0.5;
+        }
+        mean += u[0] / (SIDE * SIDE);
+        for (int k = 0; k < 3; k++) {
+            products[k] += u[0] * u[k + 1] / (SIDE * SIDE);
+        }
+    }
+    assertNear(mean, 0, 0.007, "mean", 0); // five standard deviations
+    for (int k = 0; k < 3; k++) {
+        assertNear(products[k], 0, 0.0021, "covariance", k);
     }
 }

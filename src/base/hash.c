@@ -3,22 +3,11 @@
 // Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014.
 #include "base/hash.h"
 
-#include <string.h>
-
-static uint64_t mix(uint64_t x)
-{
-    x ^= x >> 30;
-    x *= 0xBF58476D1CE4E5B9u;
-    x ^= x >> 27;
-    x *= 0x94D049BB133111EBu;
-    return x ^ (x >> 31);
-}
-
 uint64_t vplHashWords(uint64_t state, const uint32_t* words, size_t count)
 {
     uint64_t lanes[VPL_HASH_LANES];
     for (int j = 0; j < VPL_HASH_LANES; j++) {
-        lanes[j] = mix(state + (uint64_t)(j + 1) * 0x9E3779B97F4A7C15u);
+        lanes[j] = vplMixBits(state + (uint64_t)(j + 1) * 0x9E3779B97F4A7C15u);
     }
     size_t i = 0;
     for (; i + VPL_HASH_LANES <= count; i += VPL_HASH_LANES) {
@@ -28,11 +17,11 @@ uint64_t vplHashWords(uint64_t state, const uint32_t* words, size_t count)
         }
     }
     for (int j = 0; i < count; i++, j++) {
-        lanes[j] = mix(lanes[j] ^ words[i]);
+        lanes[j] = vplMixBits(lanes[j] ^ words[i]);
     }
-    uint64_t hash = mix(state ^ count);
+    uint64_t hash = vplMixBits(state ^ count);
     for (int j = 0; j < VPL_HASH_LANES; j++) {
-        hash = mix(hash ^ lanes[j]);
+        hash = vplMixBits(hash ^ lanes[j]);
     }
     return hash;
 }

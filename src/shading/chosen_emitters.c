@@ -83,9 +83,9 @@ static void lightFromTriangle(const vplReceiver* r, const vplDirectLight* direct
 // A number in [0, 1) for each lane.
 static void hashPositions(const vplPoints* points, uint64_t seed, double out[VPL_LANES])
 {
+    const vplSurface* s = points->surface;
     for (int l = 0; l < VPL_LANES; l++) {
-        const float at[3] = {points->surface->px[l], points->surface->py[l], points->surface->pz[l]};
-        out[l] = 0x1p-53 * (double)(vplHashFloats(seed, at, 3) >> 11);
+        out[l] = 0x1p-53 * (double)(vplHashPosition(seed, s->px[l], s->py[l], s->pz[l]) >> 11);
     }
 }
 
@@ -94,15 +94,18 @@ typedef struct Choosing {
     LightFcn* light;
     int count; // choices of a point
     float weight;
+    bool needsAcross; // whether `light` samples a surface
 } Choosing;
 
 static void addChoices(const vplReceiver* r, const vplDirectLight* direct, const Choosing* choosing,
                        float irradiance[3][VPL_LANES])
 {
     static const double GOLDEN = 0.61803398874989485;
-    double start[VPL_LANES], across[VPL_LANES];
+    double start[VPL_LANES], across[VPL_LANES] = {0};
     hashPositions(r->points, CHOICE_SEED, start);
-    hashPositions(r->points, ACROSS_SEED, across);
+    if (choosing->needsAcross) {
+        hashPositions(r->points, ACROSS_SEED, across);
+    }
     for (int k = 0; k < choosing->count; k++) {
         Choice c = {.amount = {0}};
         double numbers[VPL_LANES];
@@ -132,7 +135,8 @@ void vplAddChosenEmitters(const vplShading* shading, const vplDirectLight* direc
     vplRayStarts starts;
     vplFindRayStarts(shading, points, &starts);
     addChoices(&(vplReceiver){shading, points, &starts, rays}, direct,
-               &(Choosing){direct->tree, lightFromEmitter, direct->perPoint, direct->weight}, irradiance);
+               &(Choosing){direct->tree, lightFromEmitter, direct->perPoint, direct->weight, false},
+               irradiance);
 }
 
 void vplAddChosenTriangles(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
@@ -141,6 +145,6 @@ void vplAddChosenTriangles(const vplShading* shading, const vplDirectLight* dire
     vplRayStarts starts;
     vplFindRayStarts(shading, points, &starts);
     addChoices(&(vplReceiver){shading, points, &starts, rays}, direct,
-               &(Choosing){direct->triangleTree, lightFromTriangle, direct->trianglesPerPoint, 1},
+               &(Choosing){direct->triangleTree, lightFromTriangle, direct->trianglesPerPoint, 1, true},
                irradiance);
 }
