@@ -217,9 +217,13 @@ TEST(RenderingRunsTheStagesOfThePlan, 1)
         vplPlan* plan = planOf(scene, &options);
         vplRenderStats stats;
         vplImage_Destroy(renderScene(scene, &options, &stats));
+        double planning = -1, sum = 0;
         for (int i = 0; i < stats.stageCount; i++) {
             assert_false(isLeftOut(plan, stats.stages[i].name));
+            planning = strcmp(stats.stages[i].name, "planning") == 0 ? stats.stages[i].ms : planning;
+            sum += stats.stages[i].ms;
         }
+        assert_true(planning >= 0 && sum < 1.01 * stats.totalMs); // nothing is counted twice
         for (int i = 0; i < plan->stageCount; i++) {
             bool ran = false;
             for (int k = 0; k < stats.stageCount; k++) {

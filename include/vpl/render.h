@@ -26,7 +26,9 @@ typedef struct vplStageTime {
 } vplStageTime;
 
 typedef struct vplRenderStats {
-    vplStageTime stages[VPL_MAX_STAGES]; // in the order they ran
+    // In the order they ran; and parts of the work with names of their own, such as "planning": all decisions, without the stages that
+    // run for them.
+    vplStageTime stages[VPL_MAX_STAGES];
     int stageCount;
     double totalMs, cpuMs; // wall clock; processor time of all threads
     int64_t drawCalls, fragments;

@@ -43,10 +43,21 @@ typedef struct NextPlan {
     double start, rays; // when planning began
 } NextPlan;
 
-// Makes a plan. If that fails or is cancelled, the plan under way and its picture are as before.
+static double msOfStages(const vplRenderStats* stats)
+{
+    double ms = 0;
+    for (int i = 0; i < stats->stageCount; i++) {
+        ms += stats->stages[i].ms;
+    }
+    return ms;
+}
+
+// Makes a plan. If that fails or is cancelled, the plan under way and its picture are as before. Stages that run while decisions are
+// made are not part of the time of planning.
 static vplResult makePlan(vplRenderer* r, const vplRenderOptions* options, NextPlan* next)
 {
     *next = (NextPlan){NULL, vplClockMs(), (double)r->runner.stats.rays};
+    const double before = msOfStages(&r->runner.stats);
     vplResult result = vplMakePlan(&r->runner, options, NULL, &next->plan);
     if (result == VPL_SUCCESS && next->plan->problem[0] != 0) {
         result = vplFail(r->runner.run.context, next->plan->refusal, "%s", next->plan->problem);
@@ -55,8 +66,10 @@ static vplResult makePlan(vplRenderer* r, const vplRenderOptions* options, NextP
     if (result != VPL_SUCCESS) {
         r->runner.run.plan = r->plan;
         r->stale = r->done > 0;
+        return result;
     }
-    return result;
+    vplRun_AddTime(&r->runner.run, "planning", next->start + msOfStages(&r->runner.stats) - before);
+    return VPL_SUCCESS;
 }
 
 static void beginPlan(vplRenderer* r, const NextPlan* next, bool coarse)

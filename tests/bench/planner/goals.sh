@@ -1,7 +1,7 @@
 #!/bin/sh
 # Does the planner keep its word? tests/bench/planner/goals.sh BUILD SIZE GOALS SEEDS SCENE...: renders each scene by --method
 # auto for each goal (words like max-error=0.1 or budget=200) and seed, and prints lines "scene goal seed asked error
-# estimate ms passes method", where error is the relative rmse against two path-traced pictures whose noise cancels. They
+# estimate bound ms cpu passes method", where error is the relative rmse against two path-traced pictures whose noise cancels. They
 # are kept in BUILD/planner and are traced there with SPP (default 512) paths per pixel each.
 set -e
 build=$1
@@ -42,8 +42,8 @@ for scene; do
                 {
                     square = ($1 + $2 - $3) / 2
                     split(head, word, "[ =]")
-                    printf "%s asked %s error %.4f estimate %.4f ms %.0f passes %d %s\n", head, word[3],
-                      sqrt(square > 0 ? square : 0) / $4, of("relative_error_estimate"), of("total_ms"), of("passes"), method }'
+                    printf "%s asked %s error %.4f estimate %.4f bound %.4f ms %.0f cpu %.0f passes %d %s\n", head, word[3],
+                      sqrt(square > 0 ? square : 0) / $4, of("relative_error_estimate"), of("relative_error_bound"), of("total_ms"), of("cpu_ms"), of("passes"), method }'
         done
     done
 done
