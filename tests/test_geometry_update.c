@@ -4,7 +4,9 @@
 
 #include "geometry/bvh.h"
 #include "geometry/cut_outs.h"
+#include "geometry/object_build.h"
 #include "geometry/paint_data.h"
+#include "geometry/triangle.h"
 #include "scene/scene.h"
 
 static void assertSameArray(const void* a, const void* b, size_t count, size_t size)
@@ -243,4 +245,44 @@ TEST(UpdatesHoldNoMoreMemory, 2)
     }
     vplGeometry_Destroy(g);
     vplScene_Destroy(scene);
+}
+
+enum { OF_SPHERE = 5120 }; // triangles: tasks fill and sum up 4,096 each
+
+// Three spheres, of which the first and the last emit light.
+static vplGeometry* glowingSpheres(vplContext* context)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    const int glowing = addMaterial(scene, (vplRgb){0.3f, 0.2f, 0.1f}, 2);
+    Shape sphere = icosphere(4);
+    vplObjectDef object = vplDefaultObjectDef();
+    for (int i = 0; i < 3; i++) {
+        object.material = i == 1 ? 0 : glowing;
+        object.transform.m[12] = 3 * (float)i;
+        assert_int_equal(tryAddShape(scene, &sphere, true, &object), VPL_SUCCESS);
+    }
+    freeShape(&sphere);
+    return buildGeometry(scene);
+}
+
+TEST(GeometryOfManyTasksIsThatOfOne, 1)
+{
+    vplContext* several = openTestContext(3);
+    vplGeometry *one = glowingSpheres(context), *many = glowingSpheres(several);
+    double area = 0;
+    assertSameGeometry(one, many);
+    assert_int_equal(one->triangleCount, 3 * OF_SPHERE);
+    for (int i = 0; i < one->triangleCount; i++) {
+        area += vplGeometry_TriangleArea(one, i);
+        assert_int_equal(one->owners[i], i / OF_SPHERE);
+    }
+    assert_true(one->vertexCount > 3 * VPL_FILL_CHUNK && area > 37.5 && area < 37.7); // 3 x 4 pi
+    assertNear(one->area / area, 1, 1e-12, "area", 0);
+    assertNear(one->emittingArea / area, 2.0 / 3, 1e-6, "share that emits", 0);
+    assertNear(one->meanReflectance, (2 * 0.2 + 0.5) / 3, 1e-6, "reflectance", 0);
+    assert_int_equal(one->emittingTriangles, 2 * OF_SPHERE);
+    assert_int_equal(one->emittingObjects, 2);
+    vplGeometry_Destroy(one);
+    vplGeometry_Destroy(many);
+    closeTestContext(several);
 }

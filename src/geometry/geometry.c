@@ -68,13 +68,14 @@ void vplFillMaterials(const vplGeometry* g, const vplGeometryBuilder* b)
     }
 }
 
-void vplFinishObject(const vplGeometryBuilder* b, int index)
+vplResult vplFinishObject(const vplGeometryBuilder* b, int index)
 {
     vplGeometryObject* object = &b->objects[index];
     const vplMeshDef shape = vplShapeOf(b->scene, &b->scene->objects[index]);
-    vplBuildObject(b, index);
+    TRY(vplBuildObject(b, index));
     object->byFormula =
         !isCutOut(b->scene, &b->scene->objects[index]) && vplNeedsFormula(object, &shape, b->positions);
+    return VPL_SUCCESS;
 }
 
 void vplListFormulaObjects(vplGeometry* g, const vplGeometryBuilder* b)
@@ -103,7 +104,7 @@ static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
                                       .firstTriangle = triangle,
                                       .triangleCount = shape.triangleCount};
         TRY(vplPlacement_Create(g->context, &def->transform, &object->placement));
-        vplFinishObject(b, i);
+        TRY(vplFinishObject(b, i));
         vertex += object->vertexCount;
         triangle += object->triangleCount;
     }
@@ -112,33 +113,77 @@ static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
     return VPL_SUCCESS;
 }
 
-void vplSummarise(vplGeometry* g)
+// Sums over a chunk of triangles.
+typedef struct Summary {
+    double area, reflecting, emittingArea; // reflecting: mean reflectance times area
+    int emittingTriangles, emittingObjects;
+    int firstEmitter, lastEmitter; // objects
+} Summary;
+
+typedef struct Summaries {
+    const vplGeometry* geometry;
+    Summary* chunks;
+} Summaries;
+
+static void summariseChunk(void* data, int chunk, int worker)
+{
+    (void)worker;
+    const Summaries* all = data;
+    const vplGeometry* g = all->geometry;
+    Summary s = {.firstEmitter = -1, .lastEmitter = -1};
+    const int first = chunk * VPL_FILL_CHUNK;
+    for (int i = first; i < g->triangleCount && i < first + VPL_FILL_CHUNK; i++) {
+        const vplMaterialDef* material = &g->materials[g->triangleMaterials[i]];
+        const vplRgb rho = vplGeometry_ReflectanceOf(g, i);
+        const double area = vplGeometry_TriangleArea(g, i);
+        s.area += area;
+        s.reflecting += area * ((double)rho.r + (double)rho.g + (double)rho.b) / 3;
+        if (vplRgbMean(material->emission) > 0) {
+            s.emittingArea += area;
+            s.emittingTriangles++;
+            s.emittingObjects += g->owners[i] != s.lastEmitter;
+            s.firstEmitter = s.firstEmitter < 0 ? g->owners[i] : s.firstEmitter;
+            s.lastEmitter = g->owners[i];
+        }
+    }
+    all->chunks[chunk] = s;
+}
+
+static void findBounds(vplGeometry* g)
 {
     for (int i = 0; i < g->vertexCount; i++) {
         const vplVec3 p = g->positions[i], low = i > 0 ? g->boundsMin : p, high = i > 0 ? g->boundsMax : p;
         g->boundsMin = vplVec(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
         g->boundsMax = vplVec(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
     }
-    double reflecting = 0;
-    g->area = 0;
-    g->emits = false;
-    g->emittingArea = g->emittingTriangles = g->emittingObjects = 0;
-    int emitter = -1; // the last object that does
-    for (int i = 0; i < g->triangleCount; i++) {
-        const vplMaterialDef* material = &g->materials[g->triangleMaterials[i]];
-        const vplRgb rho = vplGeometry_ReflectanceOf(g, i);
-        const double area = vplGeometry_TriangleArea(g, i);
-        g->area += area;
-        reflecting += area * ((double)rho.r + (double)rho.g + (double)rho.b) / 3;
-        if (vplRgbMean(material->emission) > 0) {
-            g->emits = true;
-            g->emittingArea += area;
-            g->emittingTriangles++;
-            g->emittingObjects += g->owners[i] != emitter;
-            emitter = g->owners[i];
-        }
+}
+
+vplResult vplSummarise(vplGeometry* g)
+{
+    const int count = vplFillChunks(g->triangleCount);
+    Summaries all = {g, vplAlloc(g->context, (size_t)count, sizeof *all.chunks)};
+    if (all.chunks == NULL) {
+        return VPL_OUT_OF_MEMORY;
     }
+    vplParallelFor(g->context, count, summariseChunk, &all);
+    double reflecting = 0;
+    g->area = g->emittingArea = 0;
+    g->emittingTriangles = g->emittingObjects = 0;
+    int emitter = -1; // the last object that does
+    for (int i = 0; i < count; i++) {
+        const Summary* s = &all.chunks[i];
+        g->area += s->area;
+        reflecting += s->reflecting;
+        g->emittingArea += s->emittingArea;
+        g->emittingTriangles += s->emittingTriangles;
+        g->emittingObjects += s->emittingObjects - (s->emittingObjects > 0 && s->firstEmitter == emitter);
+        emitter = s->emittingObjects > 0 ? s->lastEmitter : emitter;
+    }
+    vplFree(g->context, all.chunks);
+    g->emits = g->emittingTriangles > 0;
     g->meanReflectance = g->area > 0 ? reflecting / g->area : 0;
+    findBounds(g);
+    return VPL_SUCCESS;
 }
 
 // Positions in float lose what is small beside their distance from (0, 0, 0).
@@ -162,7 +207,7 @@ static vplResult build(const vplScene* scene, vplGeometry* g)
     TRY(allocate(scene, g, &builder));
     TRY(fill(g, &builder));
     TRY(vplBuildPaint(scene, g, builder.objects));
-    vplSummarise(g);
+    TRY(vplSummarise(g));
     TRY(vplMarkCoplanar(g, builder.objects));
     TRY(vplBuildCutOuts(g));
     warnOfDistance(g);

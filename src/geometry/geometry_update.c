@@ -93,7 +93,7 @@ static vplResult updateObjects(vplGeometry* g, const vplScene* scene, uint8_t* c
     for (int i = 0; i < g->objectCount; i++) {
         if (changes[i] != 0) {
             b.objects[i].material = scene->objects[i].material;
-            vplFinishObject(&b, i);
+            TRY(vplFinishObject(&b, i));
         }
     }
     vplListFormulaObjects(g, &b);
@@ -123,7 +123,7 @@ static vplResult updateTrees(vplGeometry* g, const uint8_t* changes)
 static vplResult update(vplGeometry* g, const vplScene* scene, uint8_t* changes)
 {
     TRY(updateObjects(g, scene, changes));
-    vplSummarise(g);
+    TRY(vplSummarise(g));
     TRY(vplMarkCoplanar(g, (vplGeometryObject*)g->objects));
     TRY(updateTrees(g, changes));
     if (vplEnvironment_IsOf(g->environment, scene)) {

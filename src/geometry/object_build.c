@@ -55,7 +55,9 @@ static vplVec3 toWorld(const vplAffine* world, vplVec3 p)
 
 static vplVec3 unit(const double v[3])
 {
-    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    double largest = fabs(v[0]); // fmax is a call to libm
+    largest = fabs(v[1]) > largest ? fabs(v[1]) : largest;
+    largest = fabs(v[2]) > largest ? fabs(v[2]) : largest;
     if (!(largest > 0)) {
         return vplVec(0, 0, 0);
     }
@@ -83,16 +85,32 @@ static bool mirrors(const vplPlacement* p)
     return vplDot3(p->toWorld[0], cross) < 0;
 }
 
-static void fillVertices(const vplGeometryBuilder* b, const vplObjectDef* def, const vplMeshDef* shape,
-                         const vplGeometryObject* object)
+// An object while tasks fill its vertices and triangles, VPL_FILL_CHUNK each.
+typedef struct Filling {
+    const vplGeometryBuilder* builder;
+    const vplObjectDef* def;
+    vplMeshDef shape;
+    vplAffine world;
+    int owner;
+    bool mirrored;
+    struct Sums {
+        double area, rgb[3]; // reflectance times area
+    } * sums;                // by chunk of triangles
+} Filling;
+
+static void fillVertices(void* data, int chunk, int worker)
 {
-    const vplAffine world = vplAffine_FromMat4(&def->transform);
-    for (int i = 0; i < shape->vertexCount; i++) {
-        b->positions[object->firstVertex + i] = toWorld(&world, shape->positions[i]);
-    }
-    for (int i = 0; b->shadingNormals != NULL && i < shape->vertexCount; i++) {
-        b->shadingNormals[object->firstVertex + i] =
-            object->smooth ? normalToWorld(&object->placement, shape->normals[i]) : vplVec(0, 0, 0);
+    (void)worker;
+    const Filling* f = data;
+    const vplGeometryBuilder* b = f->builder;
+    const vplGeometryObject* object = &b->objects[f->owner];
+    const int first = chunk * VPL_FILL_CHUNK;
+    for (int i = first; i < f->shape.vertexCount && i < first + VPL_FILL_CHUNK; i++) {
+        b->positions[object->firstVertex + i] = toWorld(&f->world, f->shape.positions[i]);
+        if (b->shadingNormals != NULL) {
+            b->shadingNormals[object->firstVertex + i] =
+                object->smooth ? normalToWorld(&object->placement, f->shape.normals[i]) : vplVec(0, 0, 0);
+        }
     }
 }
 
@@ -107,35 +125,49 @@ static vplVec3 normalOf(const vplGeometryObject* object, int triangle, const vpl
     return vplVec(n[0], n[1], n[2]);
 }
 
-static void fillTriangles(const vplGeometryBuilder* b, const vplMeshDef* shape, int owner)
+static void fillTriangles(void* data, int chunk, int worker)
 {
-    vplGeometryObject* object = &b->objects[owner];
-    const bool mirrored = mirrors(&object->placement);
-    double area = 0, sums[3] = {0, 0, 0};
-    for (int i = 0; i < shape->triangleCount; i++) {
+    (void)worker;
+    const Filling* f = data;
+    const vplGeometryBuilder* b = f->builder;
+    const vplGeometryObject* object = &b->objects[f->owner];
+    struct Sums sums = {0};
+    const int first = chunk * VPL_FILL_CHUNK;
+    for (int i = first; i < f->shape.triangleCount && i < first + VPL_FILL_CHUNK; i++) {
         const size_t at = (size_t)object->firstTriangle + (size_t)i;
-        const uint32_t* from = shape->indices + 3 * (size_t)i;
+        const uint32_t* from = f->shape.indices + 3 * (size_t)i;
         uint32_t* index = b->indices + 3 * at;
         index[0] = from[0];
-        index[1] = from[mirrored ? 2 : 1];
-        index[2] = from[mirrored ? 1 : 2];
-        const int material = object->material >= 0 ? object->material : shape->materials[i];
+        index[1] = from[f->mirrored ? 2 : 1];
+        index[2] = from[f->mirrored ? 1 : 2];
+        const int material = object->material >= 0 ? object->material : f->shape.materials[i];
         const vplRgb rho = b->scene->materials[material].diffuse;
         const vplTriangleCorners corners = vplCornersOf(b->positions + object->firstVertex, index);
         const double a = vplTriangle_Area(&corners);
-        area += a;
-        sums[0] += a * rho.r;
-        sums[1] += a * rho.g;
-        sums[2] += a * rho.b;
-        b->owners[at] = owner;
+        sums.area += a;
+        sums.rgb[0] += a * rho.r;
+        sums.rgb[1] += a * rho.g;
+        sums.rgb[2] += a * rho.b;
+        b->owners[at] = f->owner;
         b->triangleMaterials[at] = material;
         b->normals[at] = normalOf(object, i, &corners);
     }
-    object->reflectance = (vplRgb){0, 0, 0};
-    if (area > 0) {
-        object->reflectance =
-            (vplRgb){(float)(sums[0] / area), (float)(sums[1] / area), (float)(sums[2] / area)};
+    f->sums[chunk] = sums;
+}
+
+static vplRgb meanReflectance(const Filling* f, int chunks)
+{
+    struct Sums all = {0};
+    for (int i = 0; i < chunks; i++) {
+        all.area += f->sums[i].area;
+        for (int k = 0; k < 3; k++) {
+            all.rgb[k] += f->sums[i].rgb[k];
+        }
     }
+    const double area = all.area;
+    return area > 0
+               ? (vplRgb){(float)(all.rgb[0] / area), (float)(all.rgb[1] / area), (float)(all.rgb[2] / area)}
+               : (vplRgb){0, 0, 0};
 }
 
 // Finds the oriented bounding box of a mesh: its box in local space, transformed with the object. Flat meshes
@@ -166,15 +198,30 @@ static void findOrientedBox(const vplObjectDef* def, const vplMeshDef* shape, vp
     }
 }
 
-void vplBuildObject(const vplGeometryBuilder* b, int index)
+vplResult vplBuildObject(const vplGeometryBuilder* b, int index)
 {
+    vplContext* context = b->scene->context;
     const vplObjectDef* def = &b->scene->objects[index];
-    const vplMeshDef shape = vplShapeOf(b->scene, def);
     vplGeometryObject* object = &b->objects[index];
-    fillVertices(b, def, &shape, object);
-    fillTriangles(b, &shape, index);
+    Filling f = {b,
+                 def,
+                 vplShapeOf(b->scene, def),
+                 vplAffine_FromMat4(&def->transform),
+                 index,
+                 mirrors(&object->placement),
+                 NULL};
+    const int chunks = vplFillChunks(f.shape.triangleCount);
+    f.sums = vplAlloc(context, (size_t)chunks, sizeof *f.sums);
+    if (f.sums == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    vplParallelFor(context, vplFillChunks(f.shape.vertexCount), fillVertices, &f);
+    vplParallelFor(context, chunks, fillTriangles, &f);
+    object->reflectance = meanReflectance(&f, chunks);
+    vplFree(context, f.sums);
     object->bounds = object->placement; // stays for a mesh without a box: no vertices, or all in one point
     if (def->type == VPL_OBJECT_MESH) {
-        findOrientedBox(def, &shape, object);
+        findOrientedBox(def, &f.shape, object);
     }
+    return VPL_SUCCESS;
 }

@@ -23,11 +23,18 @@ typedef struct vplGeometryBuilder {
 // The shape of an object in its own space: the mesh, or the triangles of the unit quad or box.
 vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def);
 
-// Fills the vertices and triangles of object `index`, whose placement, counts and first indices are set.
-void vplBuildObject(const vplGeometryBuilder* builder, int index);
+enum { VPL_FILL_CHUNK = 4096 }; // triangles or vertices that one task fills
 
-// Calls vplBuildObject, and decides whether rays test the object by formula.
-void vplFinishObject(const vplGeometryBuilder* builder, int index);
+static inline int vplFillChunks(int count)
+{
+    return (count + VPL_FILL_CHUNK - 1) / VPL_FILL_CHUNK;
+}
+
+// Fills the vertices and triangles of object `index`, whose placement, counts and first indices are set. VPL_OUT_OF_MEMORY.
+vplResult vplBuildObject(const vplGeometryBuilder* builder, int index);
+
+// Calls vplBuildObject, and decides whether rays test the object by formula. VPL_OUT_OF_MEMORY.
+vplResult vplFinishObject(const vplGeometryBuilder* builder, int index);
 
 // Fills geometry->formulaObjects from the objects.
 void vplListFormulaObjects(vplGeometry* geometry, const vplGeometryBuilder* builder);
@@ -35,8 +42,8 @@ void vplListFormulaObjects(vplGeometry* geometry, const vplGeometryBuilder* buil
 // Copies the materials of the scene.
 void vplFillMaterials(const vplGeometry* geometry, const vplGeometryBuilder* builder);
 
-// Finds bounds, area, mean reflectance and what emits.
-void vplSummarise(vplGeometry* geometry);
+// Finds bounds, area, mean reflectance and what emits. VPL_OUT_OF_MEMORY.
+vplResult vplSummarise(vplGeometry* geometry);
 
 // Sets geometry->paint, and the mean reflectances of `objects`, if the scene shows textures or colours of
 // vertices. VPL_OUT_OF_MEMORY.
