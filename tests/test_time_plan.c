@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of renders that have a time: how they fill it.
-#include "scenes.h"
+#include "shapes.h"
 
 #include "base/clock.h"
 #include "reference/sparse_paths.h"
@@ -198,6 +198,61 @@ TEST(PatchesFillTheTimeWhereTheySuit, 2)
     vplRenderOptions o = optionsFor(1e6);
     o.lights.compensation = VPL_COMPENSATION_RAYS; // of virtual lights
     assert_int_equal(methodInTime(context, "examples/scenes/closed-room.json", &o), VPL_METHOD_KELLER);
+}
+
+// On a machine that is 10,000 times as slow, so that the time that this test itself takes does not count.
+static void slowDown(vplContext* context)
+{
+    vplSpeeds speeds = vplUsualSpeeds();
+    const double threads = speeds.threads;
+    double* values = (double*)&speeds;
+    for (size_t i = 0; i < sizeof speeds / sizeof(double); i++) {
+        values[i] *= 10000;
+    }
+    speeds.threads = threads;
+    assert_int_equal(vplContext_SetSpeeds(context, &speeds), VPL_SUCCESS);
+}
+
+// Where doors hide the lights, patches have no gather if its rays would come too late, unless triangles are grouped into patches.
+TEST(PatchesGoWithoutAGatherInAShortTime, 2)
+{
+    static const struct {
+        double ms;
+        int width;
+        bool grouped;
+        vplMethod method;
+        int gather;
+    } ROWS[] = {{2e7, 160, false, VPL_METHOD_RADIOSITY, 16},
+                {3e6, 160, false, VPL_METHOD_RADIOSITY, 0},
+                {2e5, 160, false, VPL_METHOD_KELLER, -1},
+                {6e6, 320, true, VPL_METHOD_RADIOSITY, 6},
+                {3e6, 320, true, VPL_METHOD_KELLER, -1}};
+    slowDown(context);
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        if (ROWS[i].grouped && !ROWS[i - 1].grouped) {
+            Shape shape = icosphere(4); // 5,120 triangles
+            placeShape(&shape, 0.1f, (double[3]){0, 0, 0}, (vplVec3){1.5f, 0.5f, 2});
+            addShape(scene, &shape, false, NULL);
+            freeShape(&shape);
+        }
+        vplRenderOptions o = optionsFor(ROWS[i].ms);
+        o.output.width = ROWS[i].width;
+        o.output.height = ROWS[i].width * 9 / 16;
+        vplRenderer* r;
+        bool done = false;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        assert_true(r->coarse);
+        while (r->coarse && !done) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        assert_int_equal(r->plan->options.method, ROWS[i].method);
+        assert_int_equal(r->plan->options.radiosity.gather, ROWS[i].gather);
+        assert_true(ROWS[i].method != VPL_METHOD_RADIOSITY || ROWS[i].grouped == (r->plan->patchGroups > 0));
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+    assert_int_equal(vplContext_SetSpeeds(context, NULL), VPL_SUCCESS);
 }
 
 // Patches, and rays that gather their light, are as many as the caller asks for, however much time is left.

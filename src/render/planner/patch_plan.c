@@ -140,10 +140,14 @@ static int firstGather(const vplRenderOptions* o)
 // 2.3 and 3.5 s at 20 %, the slowest 5.3, 3.4 and 3.9 s. Smaller errors need a second plan anyway.
 static const double GROUPED_ERROR = 0.08;
 
+static bool groupsTriangles(const vplGeometry* g)
+{
+    return g->triangleCount > VPL_FIRST_PATCHES;
+}
+
 static int usualFirstPatches(const vplGeometry* g, double error)
 {
-    const bool groups = g->triangleCount > VPL_FIRST_PATCHES;
-    return groups && error >= GROUPED_ERROR ? 2 * VPL_FIRST_PATCHES : VPL_FIRST_PATCHES;
+    return groupsTriangles(g) && error >= GROUPED_ERROR ? 2 * VPL_FIRST_PATCHES : VPL_FIRST_PATCHES;
 }
 
 // Virtual lights are foreseen to need HIDDEN_RAYS / (worth * error^2) rays per pixel, where `worth` is vplLook's. The flat, whose
@@ -240,8 +244,10 @@ bool vplPatchesSuitTime(const vplRunner* r, const vplPlan* p, const vplRenderOpt
     const bool plain = isPlain(r, p);
     *gatherOut = plain ? asked->radiosity.gather : firstGather(asked);
     const double patches = plain ? VPL_FEWEST_PATCHES : VPL_FIRST_PATCHES;
+    const bool gathers =
+        !plain && groupsTriangles(r->run.results[VPL_STAGE_GEOMETRY]); // others may go without
     return (plain || isHidden(p)) && canUsePatches(r, p, asked) &&
-           fitInto(r, p, asked, patches, plain ? 0 : VPL_FEWEST_GATHER, rays);
+           fitInto(r, p, asked, patches, gathers ? VPL_FEWEST_GATHER : 0, rays);
 }
 
 void vplCountVainPatches(vplRenderer* r, double rays)
