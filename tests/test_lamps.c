@@ -422,3 +422,30 @@ TEST(ShadowMapsOfManyLampsAreReplacedByRays, 1)
     }
     vplScene_Destroy(scene);
 }
+
+// Pixels sample area lights by rays unless the time is limited, or the error is large and the picture is not tiny.
+TEST(AreaLightsAreSampledWhereThatIsWorthIt, 1)
+{
+    static const struct {
+        int width;
+        double error, ms;
+        vplMethod method;
+    } ROWS[] = {{320, 0, 0, VPL_METHOD_INSTANT_RADIOSITY},
+                {320, 0.1, 0, VPL_METHOD_INSTANT_RADIOSITY},
+                {320, 0.2, 0, VPL_METHOD_KELLER},
+                {96, 0.2, 0, VPL_METHOD_INSTANT_RADIOSITY},
+                {320, 0.1, 1000, VPL_METHOD_KELLER}};
+    vplScene* scene = openScene(context, "examples/scenes/textured-room.json");
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        vplPlan* plan;
+        o.output.width = ROWS[i].width;
+        o.output.height = ROWS[i].width * 9 / 16;
+        o.stop.maxError = ROWS[i].error;
+        o.stop.budgetMs = ROWS[i].ms;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->options.method, ROWS[i].method);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}

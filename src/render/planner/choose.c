@@ -170,6 +170,10 @@ static bool samplesLamps(const vplRunner* r, const vplRenderOptions* o)
            (vplMethodsFor(o) & VPL_USE_INSTANT_RADIOSITY) != 0 && hasLamps(r);
 }
 
+// For an error of COARSE_ERROR or more Keller's lights are enough, but in tiny pictures: 20 % at 320x180, medians of three, shop 0.6 -> 0.2 s, street
+// 0.31 -> 0.15, shade 16 -> 12; at 96x54 shade would take 5.8 s instead of 3.2.
+static const double COARSE_ERROR = 0.15;
+
 // All of Keller's defaults but for the lights on area lights.
 static void sampleLamps(vplPlan* p)
 {
@@ -218,7 +222,7 @@ vplResult vplChooseMethod(vplRunner* r, vplPlan* p)
     TRY(vplRunner_RunStage(r, VPL_STAGE_GEOMETRY));
     TRY(vplTakeLook(r, p, &p->look));
     if (!chooseDirect(r, p, error) && !vplChoosePatches(r, p)) {
-        const bool lamps = samplesLamps(r, o);
+        const bool lamps = (error < COARSE_ERROR || vplIsTinyPicture(o)) && samplesLamps(r, o);
         if (!lamps) {
             vplDecide(p, "method",
                       patchesMayFollow(r, p)
