@@ -27,12 +27,12 @@ def pixels(path):
 
 
 def render(build, scene, out, words):
-    """Processor seconds of a render."""
+    """Processor seconds of a render; None if it is refused."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([f'{build}/vpl', 'render', scene, '-o', out, '--quiet', '--threads', '1', *words], check=True,
-                   stderr=subprocess.DEVNULL)
+    done = subprocess.run([f'{build}/vpl', 'render', scene, '-o', out, '--quiet', '--threads', '1', *words],
+                          stderr=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    return None if done.returncode else after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
 
 def option(plan, name):
@@ -42,7 +42,7 @@ def option(plan, name):
 
 def measure(build, scene, plan, out, words):
     times = [render(build, scene, out, ['--plan', plan, *words]) for _ in range(3)]
-    return statistics.median(times), pixels(out)
+    return (None, None) if None in times else (statistics.median(times), pixels(out))
 
 
 def main(build, size, error, *scenes):
@@ -60,6 +60,9 @@ def main(build, size, error, *scenes):
                 if option(text, words[0][2:]) == words[1]:
                     continue
                 seconds, other = measure(build, scene, plan, out, words)
+                if seconds is None:
+                    cells.append(f'{name} refused')
+                    continue
                 change = (sum((a - b) ** 2 for a, b in zip(picture, other)) / len(picture)) ** 0.5 / mean
                 cells.append(f'{name} {100 * change:.2g} %, {seconds / usual:.2g} times')
             print(f'| {Path(scene).stem} | {method}, {usual:.2f} s | {"; ".join(cells)} |', flush=True)
