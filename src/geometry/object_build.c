@@ -88,7 +88,6 @@ static bool mirrors(const vplPlacement* p)
 // An object while tasks fill its vertices and triangles, VPL_FILL_CHUNK each.
 typedef struct Filling {
     const vplGeometryBuilder* builder;
-    const vplObjectDef* def;
     vplMeshDef shape;
     vplAffine world;
     int owner;
@@ -203,13 +202,11 @@ vplResult vplBuildObject(const vplGeometryBuilder* b, int index)
     vplContext* context = b->scene->context;
     const vplObjectDef* def = &b->scene->objects[index];
     vplGeometryObject* object = &b->objects[index];
-    Filling f = {b,
-                 def,
-                 vplShapeOf(b->scene, def),
-                 vplAffine_FromMat4(&def->transform),
-                 index,
-                 mirrors(&object->placement),
-                 NULL};
+    Filling f = {.builder = b,
+                 .shape = vplShapeOf(b->scene, def),
+                 .world = vplAffine_FromMat4(&def->transform),
+                 .owner = index,
+                 .mirrored = mirrors(&object->placement)};
     const int chunks = vplFillChunks(f.shape.triangleCount);
     f.sums = vplAlloc(context, (size_t)chunks, sizeof *f.sums);
     if (f.sums == NULL) {
