@@ -88,6 +88,17 @@ vplContext* openIsaContext(int workers, vplIsa isa)
     return vplContext_Create(&def, &context) == VPL_SUCCESS ? context : NULL;
 }
 
+vplSpeeds slowerSpeeds(double factor)
+{
+    vplSpeeds speeds = vplUsualSpeeds();
+    double* values = (double*)&speeds; // all fields are doubles
+    for (size_t i = 0; i < sizeof speeds / sizeof *values; i++) {
+        values[i] *= factor;
+    }
+    speeds.threads = vplUsualSpeeds().threads;
+    return speeds;
+}
+
 vplContext* openTestContext(int workers)
 {
     vplContext* context = openIsaContext(workers, VPL_ISA_AUTO);

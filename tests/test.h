@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <vpl/plantools.h>
 #include <vpl/stages.h>
 
 #include "plain_options.h"
@@ -57,6 +58,9 @@ const Test* findTest(const char* suite, const char* name);
 
 // Opens a context with `workers` threads that records its last message. Never NULL.
 vplContext* openTestContext(int workers);
+
+// The usual speeds of a machine whose parts of the work take `factor` times as long.
+vplSpeeds slowerSpeeds(double factor);
 
 // Does the same with a chosen instruction set; NULL if this machine lacks it.
 vplContext* openIsaContext(int workers, vplIsa isa);

@@ -4,7 +4,6 @@
 
 #include "geometry/bvh.h"
 #include "geometry/cut_outs.h"
-#include "geometry/object_build.h"
 #include "geometry/paint_data.h"
 #include "geometry/triangle.h"
 #include "scene/scene.h"
@@ -276,7 +275,7 @@ TEST(GeometryOfManyTasksIsThatOfOne, 1)
         area += vplGeometry_TriangleArea(one, i);
         assert_int_equal(one->owners[i], i / OF_SPHERE);
     }
-    assert_true(one->vertexCount > 3 * VPL_FILL_CHUNK && area > 37.5 && area < 37.7); // 3 x 4 pi
+    assert_true(one->vertexCount > 3 * VPL_TRIANGLE_CHUNK && area > 37.5 && area < 37.7); // 3 x 4 pi
     assertNear(one->area / area, 1, 1e-12, "area", 0);
     assertNear(one->emittingArea / area, 2.0 / 3, 1e-6, "share that emits", 0);
     assertNear(one->meanReflectance, (2 * 0.2 + 0.5) / 3, 1e-6, "reflectance", 0);

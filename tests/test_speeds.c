@@ -44,17 +44,6 @@ static float timeOf(const vplScene* scene, const char* method, const char* optio
     return predict(scene, &o, NULL).x;
 }
 
-static vplSpeeds slower(double factor)
-{
-    vplSpeeds speeds = vplUsualSpeeds();
-    double* values = (double*)&speeds;
-    for (int i = 0; i < SPEEDS; i++) {
-        values[i] *= factor;
-    }
-    speeds.threads = vplUsualSpeeds().threads;
-    return speeds;
-}
-
 static bool isPositive(const vplSpeeds* speeds, bool threads)
 {
     const double* values = (const double*)speeds;
@@ -142,7 +131,7 @@ TEST_ALONE(MeasuringWithoutMemoryFailsCleanly)
     static const long points[] = {1, 2, 5, 9, 20, 50, 100, 150};
     for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
         Failing failing = {.failAt = points[i], .stayEmpty = i % 2};
-        vplSpeeds speeds = slower(1), kept = speeds;
+        vplSpeeds speeds = slowerSpeeds(1), kept = speeds;
         vplContext* context = openFailing(&failing);
         assert_non_null(context);
         assert_int_equal(vplSpeeds_Measure(context, &speeds), VPL_OUT_OF_MEMORY);
@@ -158,7 +147,7 @@ TEST(SpeedsThatAreNotPositiveAreRefused, 1)
     for (int i = 0; i < SPEEDS; i++) {
         const double wrong[] = {-1, NAN, INFINITY};
         for (int k = 0; k < 3; k++) {
-            vplSpeeds speeds = slower(1);
+            vplSpeeds speeds = slowerSpeeds(1);
             ((double*)&speeds)[i] = wrong[k];
             assert_int_equal(vplContext_SetSpeeds(context, &speeds), VPL_INVALID_ARGUMENT);
             assert_non_null(strstr(takeMessage(), "not positive"));
@@ -170,7 +159,7 @@ TEST_ALONE(SpeedsWithoutMemoryAreNotSet)
 {
     Failing failing = {.failAt = 1};
     vplContext* context = openFailing(&failing);
-    const vplSpeeds speeds = slower(2);
+    const vplSpeeds speeds = slowerSpeeds(2);
     assert_int_equal(vplContext_SetSpeeds(context, &speeds), VPL_OUT_OF_MEMORY);
     assert_int_equal(vplContext_SetSpeeds(context, &speeds), VPL_SUCCESS);
     assert_int_equal(vplContext_SetSpeeds(context, &speeds), VPL_SUCCESS);
@@ -210,7 +199,7 @@ TEST(PredictedTimeGrowsWithTheWork, 1)
 TEST(PredictedTimeFollowsSpeedsAndThreads, 1)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
-    const vplSpeeds slow = slower(10);
+    const vplSpeeds slow = slowerSpeeds(10);
     for (int i = 0; i < METHOD_COUNT; i++) {
         const vplRenderOptions o = optionsOf(METHODS[i], NULL, NULL);
         const float one = predict(scene, &o, &(vplMachine){1, NULL}).x,
@@ -228,7 +217,7 @@ TEST(PredictedTimeFollowsSpeedsAndThreads, 1)
 
 TEST(SpeedsChangeNoDecisionAndNoBit, 1)
 {
-    const vplSpeeds slow = slower(10);
+    const vplSpeeds slow = slowerSpeeds(10);
     for (int i = 0; i < METHOD_COUNT + 1; i++) {
         uint64_t hashes[2];
         for (int k = 0; k < 2; k++) {
@@ -249,7 +238,7 @@ TEST(PlanSaysWhichMachineItsTimeIsOf, 1)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     const vplRenderOptions o = optionsOf("keller", NULL, NULL);
-    const vplSpeeds speeds = slower(1);
+    const vplSpeeds speeds = slowerSpeeds(1);
     const struct {
         vplMachine machine;
         const char* words;

@@ -200,19 +200,6 @@ TEST(PatchesFillTheTimeWhereTheySuit, 2)
     assert_int_equal(methodInTime(context, "examples/scenes/closed-room.json", &o), VPL_METHOD_KELLER);
 }
 
-// On a machine that is 10,000 times as slow, so that the time that this test itself takes does not count.
-static void slowDown(vplContext* context)
-{
-    vplSpeeds speeds = vplUsualSpeeds();
-    const double threads = speeds.threads;
-    double* values = (double*)&speeds;
-    for (size_t i = 0; i < sizeof speeds / sizeof(double); i++) {
-        values[i] *= 10000;
-    }
-    speeds.threads = threads;
-    assert_int_equal(vplContext_SetSpeeds(context, &speeds), VPL_SUCCESS);
-}
-
 // Where doors hide the lights, patches have no gather if its rays would come too late, unless triangles are grouped into patches.
 TEST(PatchesGoWithoutAGatherInAShortTime, 2)
 {
@@ -227,7 +214,8 @@ TEST(PatchesGoWithoutAGatherInAShortTime, 2)
                 {2e5, 160, false, VPL_METHOD_KELLER, -1},
                 {6e6, 320, true, VPL_METHOD_RADIOSITY, 6},
                 {3e6, 320, true, VPL_METHOD_KELLER, -1}};
-    slowDown(context);
+    const vplSpeeds slow = slowerSpeeds(10000); // so that the time that this test itself takes does not count
+    assert_int_equal(vplContext_SetSpeeds(context, &slow), VPL_SUCCESS);
     vplScene* scene = openScene(context, "examples/scenes/flat.json");
     for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
         if (ROWS[i].grouped && !ROWS[i - 1].grouped) {

@@ -26,8 +26,8 @@ typedef struct vplStageTime {
 } vplStageTime;
 
 typedef struct vplRenderStats {
-    // In the order they ran; and parts of the work with names of their own, such as "planning": all decisions, without the stages that
-    // run for them.
+    // Stages in the order they ran, and parts of the work that are timed by themselves, such as "planning": the planner's decisions
+    // without the stages that they run.
     vplStageTime stages[VPL_MAX_STAGES];
     int stageCount;
     double totalMs, cpuMs; // wall clock; processor time of all threads

@@ -114,6 +114,17 @@ size_t vplAllocatedBytes(const void* memory);
 // Runs task(data, i, worker) for i in [0, count), on the calling thread if there is one worker or one task.
 void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data);
 
+// The number of chunks of `size` that `count` elements make, and the end of the chunk that begins at `first`. Neither overflows.
+static inline int vplCountChunks(int count, int size)
+{
+    return count / size + (count % size > 0);
+}
+
+static inline int vplEndOfChunk(int count, int first, int size)
+{
+    return count - first < size ? count : first + size;
+}
+
 // The part of a longer job that a loop does: `progress` (may be NULL) is called with fractions that grow from
 // `from` to `to`.
 typedef struct vplProgressRange {

@@ -8,8 +8,7 @@
 #include "geometry/bvh.h"
 
 enum {
-    VPL_BINARY_LEAF = 2,   // ranges of up to this many triangles are not split
-    VPL_BUILD_CHUNK = 4096 // triangles that one task bounds, and blocks that one task fills
+    VPL_BINARY_LEAF = 2 // ranges of up to this many triangles are not split
 };
 
 // Some of the items, with the bounds of their boxes and of the centres of these.

@@ -3,6 +3,7 @@
 // Compressed Wide BVHs, HPG 2017, section 4.1: dynamic programming over the expected cost decides which nodes
 // of the binary tree become children of wide ones, and which become blocks.
 #include "geometry/bvh_build.h"
+#include "geometry/triangle.h"
 
 // Cost of a visit, relative: blocks are further away in memory and take more arithmetic.
 static const float NODE_COST = 1, BLOCK_COST = 1.2f;
@@ -169,7 +170,9 @@ static void fillBlocks(void* data, int task, int worker)
 {
     (void)worker;
     const Collapse* c = data;
-    for (int i = task * VPL_BUILD_CHUNK; i < c->bvh->blockCount && i < (task + 1) * VPL_BUILD_CHUNK; i++) {
+    const int first = task * VPL_TRIANGLE_CHUNK,
+              end = vplEndOfChunk(c->bvh->blockCount, first, VPL_TRIANGLE_CHUNK);
+    for (int i = first; i < end; i++) {
         fillBlock(c, i);
     }
 }
@@ -188,8 +191,8 @@ static vplResult allocate(Collapse* c)
 
 static void fillAllBlocks(Collapse* c)
 {
-    vplParallelFor(c->builder->geometry->context,
-                   (c->bvh->blockCount + VPL_BUILD_CHUNK - 1) / VPL_BUILD_CHUNK, fillBlocks, c);
+    vplParallelFor(c->builder->geometry->context, vplCountChunks(c->bvh->blockCount, VPL_TRIANGLE_CHUNK),
+                   fillBlocks, c);
     bool any = false;
     for (int i = 0; i < c->bvh->blockCount; i++) {
         any = any || c->bvh->marks[i].extreme != 0 || c->bvh->marks[i].byFormula != 0;

@@ -55,9 +55,10 @@ static void collectChunk(void* data, int chunk, int worker)
     (void)worker;
     const Collection* c = data;
     const vplGeometry* g = c->builder->geometry;
-    const int first = chunk * VPL_BUILD_CHUNK;
+    const int first = chunk * VPL_TRIANGLE_CHUNK,
+              end = vplEndOfChunk(g->triangleCount, first, VPL_TRIANGLE_CHUNK);
     int count = 0;
-    for (int i = first; i < g->triangleCount && i < first + VPL_BUILD_CHUNK; i++) {
+    for (int i = first; i < end; i++) {
         if (vplIsSolid(g, i)) {
             c->builder->items[first + count] = vplBoundItem(g, i);
             c->builder->ids[first + count++] = i;
@@ -87,7 +88,7 @@ static vplBuildRange joinChunks(const Collection* c, int chunks)
 vplResult vplCollectItems(vplBvhBuilder* b, vplBuildRange* allOut)
 {
     const size_t triangles = (size_t)b->geometry->triangleCount;
-    const int chunks = (b->geometry->triangleCount + VPL_BUILD_CHUNK - 1) / VPL_BUILD_CHUNK;
+    const int chunks = vplCountChunks(b->geometry->triangleCount, VPL_TRIANGLE_CHUNK);
     b->items = vplArena_Alloc(b->scratch, triangles, sizeof *b->items);
     b->ids = vplArena_Alloc(b->scratch, triangles, sizeof *b->ids);
     Collection c = {b, vplArena_Alloc(b->scratch, (size_t)chunks, sizeof *c.ranges)};

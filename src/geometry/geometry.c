@@ -131,8 +131,9 @@ static void summariseChunk(void* data, int chunk, int worker)
     const Summaries* all = data;
     const vplGeometry* g = all->geometry;
     Summary s = {.firstEmitter = -1, .lastEmitter = -1};
-    const int first = chunk * VPL_FILL_CHUNK;
-    for (int i = first; i < g->triangleCount && i < first + VPL_FILL_CHUNK; i++) {
+    const int first = chunk * VPL_TRIANGLE_CHUNK,
+              end = vplEndOfChunk(g->triangleCount, first, VPL_TRIANGLE_CHUNK);
+    for (int i = first; i < end; i++) {
         const vplMaterialDef* material = &g->materials[g->triangleMaterials[i]];
         const vplRgb rho = vplGeometry_ReflectanceOf(g, i);
         const double area = vplGeometry_TriangleArea(g, i);
@@ -160,7 +161,7 @@ static void findBounds(vplGeometry* g)
 
 vplResult vplSummarise(vplGeometry* g)
 {
-    const int count = vplFillChunks(g->triangleCount);
+    const int count = vplCountChunks(g->triangleCount, VPL_TRIANGLE_CHUNK);
     Summaries all = {g, vplAlloc(g->context, (size_t)count, sizeof *all.chunks)};
     if (all.chunks == NULL) {
         return VPL_OUT_OF_MEMORY;

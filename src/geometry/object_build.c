@@ -85,7 +85,7 @@ static bool mirrors(const vplPlacement* p)
     return vplDot3(p->toWorld[0], cross) < 0;
 }
 
-// An object while tasks fill its vertices and triangles, VPL_FILL_CHUNK each.
+// An object whose vertices and triangles are being filled. Each task fills VPL_TRIANGLE_CHUNK of them.
 typedef struct Filling {
     const vplGeometryBuilder* builder;
     vplMeshDef shape;
@@ -103,8 +103,9 @@ static void fillVertices(void* data, int chunk, int worker)
     const Filling* f = data;
     const vplGeometryBuilder* b = f->builder;
     const vplGeometryObject* object = &b->objects[f->owner];
-    const int first = chunk * VPL_FILL_CHUNK;
-    for (int i = first; i < f->shape.vertexCount && i < first + VPL_FILL_CHUNK; i++) {
+    const int first = chunk * VPL_TRIANGLE_CHUNK,
+              end = vplEndOfChunk(f->shape.vertexCount, first, VPL_TRIANGLE_CHUNK);
+    for (int i = first; i < end; i++) {
         b->positions[object->firstVertex + i] = toWorld(&f->world, f->shape.positions[i]);
         if (b->shadingNormals != NULL) {
             b->shadingNormals[object->firstVertex + i] =
@@ -131,8 +132,9 @@ static void fillTriangles(void* data, int chunk, int worker)
     const vplGeometryBuilder* b = f->builder;
     const vplGeometryObject* object = &b->objects[f->owner];
     struct Sums sums = {0};
-    const int first = chunk * VPL_FILL_CHUNK;
-    for (int i = first; i < f->shape.triangleCount && i < first + VPL_FILL_CHUNK; i++) {
+    const int first = chunk * VPL_TRIANGLE_CHUNK,
+              end = vplEndOfChunk(f->shape.triangleCount, first, VPL_TRIANGLE_CHUNK);
+    for (int i = first; i < end; i++) {
         const size_t at = (size_t)object->firstTriangle + (size_t)i;
         const uint32_t* from = f->shape.indices + 3 * (size_t)i;
         uint32_t* index = b->indices + 3 * at;
@@ -207,12 +209,12 @@ vplResult vplBuildObject(const vplGeometryBuilder* b, int index)
                  .world = vplAffine_FromMat4(&def->transform),
                  .owner = index,
                  .mirrored = mirrors(&object->placement)};
-    const int chunks = vplFillChunks(f.shape.triangleCount);
+    const int chunks = vplCountChunks(f.shape.triangleCount, VPL_TRIANGLE_CHUNK);
     f.sums = vplAlloc(context, (size_t)chunks, sizeof *f.sums);
     if (f.sums == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    vplParallelFor(context, vplFillChunks(f.shape.vertexCount), fillVertices, &f);
+    vplParallelFor(context, vplCountChunks(f.shape.vertexCount, VPL_TRIANGLE_CHUNK), fillVertices, &f);
     vplParallelFor(context, chunks, fillTriangles, &f);
     object->reflectance = meanReflectance(&f, chunks);
     vplFree(context, f.sums);

@@ -23,13 +23,6 @@ typedef struct vplGeometryBuilder {
 // The shape of an object in its own space: the mesh, or the triangles of the unit quad or box.
 vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def);
 
-enum { VPL_FILL_CHUNK = 4096 }; // triangles or vertices that one task fills
-
-static inline int vplFillChunks(int count)
-{
-    return (count + VPL_FILL_CHUNK - 1) / VPL_FILL_CHUNK;
-}
-
 // Fills the vertices and triangles of object `index`, whose placement, counts and first indices are set. VPL_OUT_OF_MEMORY.
 vplResult vplBuildObject(const vplGeometryBuilder* builder, int index);
 

@@ -7,6 +7,8 @@
 
 #include <vpl/geometry.h>
 
+enum { VPL_TRIANGLE_CHUNK = 4096 }; // triangles, their vertices or their blocks that one task takes
+
 typedef struct vplTriangleCorners {
     vplVec3 corner[3];
 } vplTriangleCorners;

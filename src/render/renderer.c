@@ -52,8 +52,8 @@ static double msOfStages(const vplRenderStats* stats)
     return ms;
 }
 
-// Makes a plan. If that fails or is cancelled, the plan under way and its picture are as before. Stages that run while decisions are
-// made are not part of the time of planning.
+// Makes a plan. If that fails or is cancelled, the plan under way and its picture are as before. The time of planning does not
+// include the stages that decisions run.
 static vplResult makePlan(vplRenderer* r, const vplRenderOptions* options, NextPlan* next)
 {
     *next = (NextPlan){NULL, vplClockMs(), (double)r->runner.stats.rays};

@@ -162,7 +162,7 @@ static bool isHidden(const vplPlan* p)
     return p->look.lights >= ENOUGH_LIGHTS && p->look.reaching < FEW_REACH && p->look.background < 1;
 }
 
-// `reaching`: of the look's lights; at least one is taken to reach the picture.
+// Rays that virtual lights are foreseen to need if `reaching` of the look's lights, at least one, reach the picture.
 static double raysForReaching(const vplPlan* p, double reaching)
 {
     const vplRenderOptions* o = &p->options;
@@ -181,17 +181,19 @@ static const double ONE_PASS = 0.05;
 
 // The number of patches that come first in a scene whose light is hidden; 0: they cost too much. Tiny pictures, which have no gather, get three times
 // as many if these are cheap enough, too: at 96x54 corridor takes 1.9 s instead of 4.0 at 20 %, 13 instead of 22 at 10 % (medians of eight and of
-// four). Whether they are cheap is told by one standard deviation less than the lights that reach the picture, because these are few (with two of
-// those eight seeds three of 241 do: 3.1 -> 2.7 s and 2.0 -> 1.3).
+// four). Few of the look's lights reach such a picture, so the estimate of what virtual lights cost uses their number less one standard deviation
+// (with two of those eight seeds three of 241 lights do: 3.1 -> 2.7 s and 2.0 -> 1.3).
 static int countFirstPatches(const vplRunner* r, const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
     const int usual = usualFirstPatches(r->run.results[VPL_STAGE_GEOMETRY], o->stop.maxError),
-              more = vplIsTinyPicture(o) ? 3 * VPL_FIRST_PATCHES : usual, gather = firstGather(o);
-    const double reaching = p->look.worth * p->look.lights, fewer = reaching - sqrt(reaching);
+              more = 3 * VPL_FIRST_PATCHES, gather = firstGather(o);
+    const double reaching = p->look.worth * p->look.lights;
     const double rays = VPL_SHARE_OF_PATCHES * vplForeseenLightRays(p);
-    const double most = VPL_SHARE_OF_PATCHES * raysForReaching(p, vplIsTinyPicture(o) ? fewer : reaching);
-    return fitInto(r, p, o, more, gather, most) ? more : fitInto(r, p, o, usual, gather, rays) ? usual : 0;
+    const double most = VPL_SHARE_OF_PATCHES * raysForReaching(p, reaching - sqrt(reaching));
+    return vplIsTinyPicture(o) && fitInto(r, p, o, more, gather, most) ? more
+           : fitInto(r, p, o, usual, gather, rays)                     ? usual
+                                                                       : 0;
 }
 
 // Patches that a plain scene begins with; 0: virtual lights are quicker.

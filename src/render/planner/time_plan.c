@@ -36,6 +36,12 @@ double vplShareOfPicture(const vplPlan* p)
     return p->firstMs > 0 ? timeOfStage(p, VPL_STAGE_PICTURE) / p->firstMs : 0;
 }
 
+// True if the first picture of the plan is foreseen in this share of the time that is left.
+static bool isInTime(const vplRenderer* r, double share)
+{
+    return vplTimeOfFirst(r) <= share * vplTimeLeft(r);
+}
+
 // A plan is not begun if this share of the time foreseen for its first picture is more than the time that is left.
 static const double HOPELESS = 0.8;
 
@@ -118,11 +124,11 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
     }
     coarsen(r, patches ? 0.02 : 0.0625, &o);
     TRY(vplRenderer_Plan(r, &o, true));
-    if (!patches && o.particles.count > VERY_FEW && vplTimeOfFirst(r) > SURE * vplTimeLeft(r)) {
+    if (!patches && o.particles.count > VERY_FEW && !isInTime(r, SURE)) {
         o.particles.count = VERY_FEW;
         TRY(vplRenderer_Plan(r, &o, true));
     }
-    if (!patches && o.lights.emitterSamples > 1 && vplTimeOfFirst(r) > vplTimeLeft(r)) {
+    if (!patches && o.lights.emitterSamples > 1 && !isInTime(r, 1)) {
         o.lights.emitterSamples = 1; // 1280x720, 200 ms, 1,000 lamps: 0.2 s instead of 0.5
         return vplRenderer_Plan(r, &o, true);
     }
@@ -183,8 +189,8 @@ static vplResult refine(vplRenderer* r)
     return vplRenderer_Replace(r, &o, coarse, -1);
 }
 
-// A first picture by patches may take this share of the time, and rays that gather their light that. Such a picture takes up to 1.7 times as long
-// as foreseen (flat), so nothing is gathered if it is foreseen in more than SURE_OF_GATHER of the time that is left.
+// A first picture by patches may take SHARE_OF_PATCHES of the time, and the rays that gather their light SHARE_OF_GATHER. Pictures with a gather take
+// up to 1.7 times the predicted time (flat), so the gather is left out if the prediction is more than SURE_OF_GATHER of the time left.
 static const double SHARE_OF_PATCHES = 0.5, SHARE_OF_GATHER = 0.25, SURE_OF_GATHER = 0.55;
 
 // Patches that are made already stay where their number is so near to the one that fits.
@@ -209,7 +215,7 @@ static double drawingMs(const vplRenderer* r)
     return vplShareOfPicture(r->plan) * r->plan->firstMs;
 }
 
-// The rays of the plan's gather that fit into the time; 0: too few.
+// The number of gather rays per pixel that fits into the time; 0 if it is less than VPL_FEWEST_GATHER.
 static int fitGather(const vplRenderer* r)
 {
     const double fit = fmin(1, SHARE_OF_GATHER * vplTimeLeft(r) / drawingMs(r));
@@ -227,37 +233,34 @@ static double fitPatches(const vplRenderer* r, double drawn)
     return about ? planned : fmin(fits, vplMostPatches(r->runner.run.context));
 }
 
-static bool isInTime(const vplRenderer* r, double share)
-{
-    return vplTimeOfFirst(r) <= share * vplTimeLeft(r);
-}
-
 // Replaces a plan of VPL_FIRST_PATCHES patches by one with as many patches and gather rays as fit into the time, or by virtual lights if
-// too few patches fit. If too few rays fit, or the picture may be late with them, nothing is gathered: where doors hide the lights, patches alone
-// are better than virtual lights (320x180: corridor in 200 ms 17 % instead of 80 to 150, flat in 300 ms 13 instead of 36 to 94), unless triangles
-// are grouped into patches (furnished in 1 s: 64 % instead of 16). Patches of plain scenes, which have no gather, become fewer if they are late.
+// too few patches fit. The gather is left out if too few rays fit or the picture may be late with them: where doors hide the lights, patches
+// without a gather have less error than virtual lights (320x180: corridor in 200 ms 17 % instead of 80 to 150, flat in 300 ms 13 instead of 36 to 94).
+// It is kept where triangles are grouped into patches (furnished in 1 s: 16 % with a gather, 64 without). Plain scenes have no gather; if their
+// patches are late, vplFitPlan makes them fewer.
 static vplResult fillTime(vplRenderer* r)
 {
     const vplRadiosityOptions planned = r->plan->options.radiosity;
     const vplRenderOptions lights = vplAskedOfLights(r);
-    const bool alone = planned.gather > 0 && r->plan->patchGroups == 0;
-    int gather = planned.gather > 0 ? fitGather(r) : 0;
-    double patches = 0;
-    if (alone && gather == 0) {
+    const bool gathers = planned.gather > 0, mayDrop = gathers && r->plan->patchGroups == 0;
+    const int gather = fitGather(r);
+    if (gathers && gather == 0 && !mayDrop) {
+        return vplRenderer_Plan(r, &lights, false);
+    }
+    double patches = fitPatches(r, gathers ? drawingMs(r) * gather / planned.gather : drawingMs(r));
+    if (gathers && gather == 0) {
         TRY(planPatches(r, planned.patches, 0));
         patches = fitPatches(r, drawingMs(r));
         patches = patches < planned.patches && isInTime(r, SURE) ? planned.patches : patches;
-    } else if (planned.gather == 0 || gather > 0) {
-        patches = fitPatches(r, planned.gather > 0 ? drawingMs(r) * gather / planned.gather : drawingMs(r));
     }
     if (patches < VPL_FEWEST_PATCHES) {
         return vplRenderer_Plan(r, &lights, false);
     }
     TRY(planPatches(r, patches, gather));
-    if (alone && gather > 0 && !isInTime(r, SURE_OF_GATHER)) {
+    if (mayDrop && gather > 0 && !isInTime(r, SURE_OF_GATHER)) {
         TRY(planPatches(r, patches, 0));
     }
-    if (alone && !isInTime(r, SURE)) {
+    if (mayDrop && !isInTime(r, SURE)) {
         return vplRenderer_Plan(r, &lights, false);
     }
     vplDecide(r->plan, "method", "light that patches exchange has no noise");
@@ -309,7 +312,7 @@ static bool isFirstLate(const vplRenderer* r)
     const vplPlan* p = r->plan;
     const bool choosesAtHits =
         p->options.lights.compensation == VPL_COMPENSATION_RAYS && p->emittersPerPoint > 0;
-    return vplTimeOfFirst(r) > (choosesAtHits ? SURE_OF_CHOICES : SURE) * vplTimeLeft(r);
+    return !isInTime(r, choosesAtHits ? SURE_OF_CHOICES : SURE);
 }
 
 // Only options that the caller has not set become smaller. Without rays, which take most of the time of small passes, passes need not grow.

@@ -16,17 +16,17 @@ materials='"materials": {"white": {"diffuse": [0.75, 0.74, 0.7]}, "oak": {"diffu
 "rust": {"diffuse": [0.55, 0.22, 0.1]}, "moss": {"diffuse": [0.14, 0.27, 0.09]}, "sea": {"diffuse": [0.12, 0.25, 0.4]},
 "lamp": {"diffuse": [0.6, 0.6, 0.6], "emission": [9, 8.4, 7.2]}, "window": {"diffuse": [0.2, 0.2, 0.2], "emission": [3, 2.2, 1.1]}}, "objects": ['
 
-# box MATERIAL X Y Z WIDTH HEIGHT DEPTH [TURN]: with a comma behind it. wall is a box of 0.1 m that light cannot pass.
+# box MATERIAL X Y Z WIDTH HEIGHT DEPTH [TURN]: with a comma behind it.
 box() {
     echo "{\"type\": \"box\", \"material\": \"$1\", \"translate\": [$2, $3, $4], \"scale\": [$5, $6, $7], \"rotate\": [0, ${8:-0}, 0]},"
 }
 
-# quad MATERIAL X Y Z PITCH TURN WIDTH HEIGHT
+# quad MATERIAL X Y Z PITCH TURN WIDTH HEIGHT: with a comma behind it.
 quad() {
     echo "{\"type\": \"quad\", \"material\": \"$1\", \"translate\": [$2, $3, $4], \"rotate\": [$5, $6, 0], \"scale\": [$7, $8, 1]},"
 }
 
-# many PROGRAM: lines of an awk program with uniform random numbers between a and b by u(a, b).
+# many SEED PROGRAM: what an awk program prints, in which u(a, b) is a uniform random number between a and b.
 many() {
     awk "function u(a, b) { return a + (b - a) * rand() } BEGIN { srand($1); $2 }"
 }

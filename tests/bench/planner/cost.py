@@ -96,4 +96,5 @@ def main(build, size, goals, seeds, *paths):
                   flush=True)
 
 
-main(*sys.argv[1:])
+if __name__ == '__main__':
+    main(*sys.argv[1:])
