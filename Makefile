@@ -72,13 +72,14 @@ ISA_avx2   := -mavx2 $(MOVES)
 ISA_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 
 LIB_SOURCES    := $(filter-out src/cli/% src/mpi/%,$(wildcard src/*/*.c src/*/*/*.c))
+EXR_SOURCES    := $(wildcard src/image/exr*.c)
 KERNEL_SOURCES := $(filter %_kernel.c,$(LIB_SOURCES))
 PLAIN_SOURCES  := $(filter-out %_kernel.c,$(LIB_SOURCES))
 CLI_SOURCES    := $(wildcard src/cli/*.c src/cli/*/*.c)
 # PACKED=1 compiles several sources as one file, which takes half of the processor time. It is for builds from scratch: any change
 # compiles all of them again. Sources with rules of their own, and stb's, are compiled alone.
 ifdef PACKED
-ALONE          := src/cli/main.c src/image/stb_files.c src/image/exr.c
+ALONE          := src/cli/main.c src/image/stb_files.c $(EXR_SOURCES)
 pack            = $(filter $(ALONE),$(1)) $(shell tests/pack.sh $(BUILD)/packed $(filter-out $(ALONE),$(1)))
 KERNEL_SOURCES := $(call pack,$(KERNEL_SOURCES))
 PLAIN_SOURCES  := $(call pack,$(PLAIN_SOURCES))
@@ -389,8 +390,8 @@ endef
 $(foreach isa,$(ISAS),$(eval $(call KERNEL_RULE,$(isa))))
 
 # OpenEXR may come or go between two builds.
-$(BUILD)/obj/src/image/exr.o: $(BUILD)/obj/exr-$(EXR)
-$(BUILD)/obj/src/image/exr.o: ALL_CFLAGS += -DVPL_EXR=$(EXR)
+$(EXR_SOURCES:%.c=$(BUILD)/obj/%.o): $(BUILD)/obj/exr-$(EXR)
+$(EXR_SOURCES:%.c=$(BUILD)/obj/%.o): ALL_CFLAGS += -DVPL_EXR=$(EXR)
 $(BUILD)/obj/exr-$(EXR):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/obj/exr-*

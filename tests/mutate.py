@@ -5,7 +5,7 @@
 tests/mutate.py [COUNT [FIRST [SEED]]]: default 200 0 1. Judges COUNT mutations, from number FIRST on. A number and a seed
 mean the same mutation of the same sources. src/cli/bench, which measures, is left out. A mutation is killed if a test
 fails, crashes or takes 10 s longer than in the first build, which is about three times as slow. Mutations that do not
-compile, or compile to the same code, are skipped and not counted: all of src/mpi, src/windows and src/image/exr.c, too.
+compile, or compile to the same code, are skipped and not counted: all of src/mpi, src/windows and src/image/exr*.c, too.
 
 Works on a clone of HEAD in build/mutants. A first build counts which lines every suite runs; this takes half an hour, and
 build/mutants.json keeps it until src changes. A mutation is judged by the suites that run its line only, the likeliest and
