@@ -74,31 +74,33 @@ typedef struct Closing {
     double square; // the squared error that is foreseen for the picture
 } Closing;
 
-// The pixels, and the share of `left` milliseconds for their paths, that leave the least error. Passes fill the rest. `bias`: the share of the
-// squared bias that more patches leave; 1: there are no more.
-static Closing findClosing(const vplRenderer* r, const vplErrorState* s, const vplEdgeStep* steps, int count,
-                           double bias, double left)
-{
-    static const double SHARES[] = {0.1, 0.2, 0.35, 0.5, 0.75, 1};
-    const double pathMs = timeOfPath(r), all = s->once ? 1 : r->passMs / (r->passMs + left);
-    Closing best = {0, 0, bias * (s->bias + DOUBT * s->spread) + s->noise * all};
-    for (int i = 0; i < 6 * count; i++) {
-        const vplEdgeStep* step = &steps[i / 6];
-        const double share = s->once ? 1 : SHARES[i % 6], paths = share * left / (step->pixels * pathMs);
-        const double passes = s->once ? 1 : 1 + (1 - share) * left / r->passMs;
-        const double square = bias * (step->bias + DOUBT * step->spread) + step->noise / passes +
-                              vplVarianceOfEdges(s, step, paths);
-        if (paths >= FIRST_PATHS && square < best.square) {
-            best = (Closing){step->pixels, share * left, square};
-        }
-    }
-    return best;
-}
-
 // Powers of two, and half as many more, are spread most evenly.
 static int morePaths(int paths)
 {
     return (paths & (paths - 1)) == 0 ? paths + paths / 2 : paths / 3 * 4;
+}
+
+// The pixels and the number of their paths, in `left` milliseconds at most, that leave the least error. Passes fill the rest. `bias`: the share of
+// the squared bias that more patches leave; 1: there are no more.
+static Closing findClosing(const vplRenderer* r, const vplErrorState* s, const vplEdgeStep* steps, int count,
+                           double bias, double left)
+{
+    const double pathMs = timeOfPath(r), all = s->once ? 1 : r->passMs / (r->passMs + left);
+    Closing best = {0, 0, bias * (s->bias + DOUBT * s->spread) + s->noise * all};
+    for (int i = 0; i < count; i++) {
+        const vplEdgeStep* step = &steps[i];
+        const double each = step->pixels * pathMs;
+        for (int paths = FIRST_PATHS; paths <= VPL_MAX_SAMPLES && paths * each <= left;
+             paths = morePaths(paths)) {
+            const double passes = s->once ? 1 : 1 + (left - paths * each) / r->passMs;
+            const double square = bias * (step->bias + DOUBT * step->spread) + step->noise / passes +
+                                  vplVarianceOfEdges(s, step, paths);
+            if (square < best.square) {
+                best = (Closing){step->pixels, paths * each, square};
+            }
+        }
+    }
+    return best;
 }
 
 // Traces paths through so many pixels at edges until the time is over; 0: none.
@@ -185,6 +187,24 @@ static vplResult learnError(vplRenderer* r, bool (*isEnough)(const vplRenderer* 
     return VPL_SUCCESS;
 }
 
+// Spends all of the time that is left on paths through those pixels at edges that leave the least error.
+static vplResult traceBestEdges(vplRenderer* r, const vplEdgeStep* steps, int count)
+{
+    vplErrorState s = vplErrorState_Of(r);
+    s.once = true; // no pass follows
+    return traceEdges(r, findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).pixels);
+}
+
+// Spends the rest of the time on paths at edges, and what they leave of it on paths of the truth.
+static vplResult spendRest(vplRenderer* r)
+{
+    vplEdgeStep steps[VPL_EDGE_STEPS];
+    int count;
+    TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
+    TRY(traceBestEdges(r, steps, count));
+    return learnError(r, isSure);
+}
+
 // The planner looks for other plans once, when a sixth of the time is over, and for edges in the second half of it.
 static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
 {
@@ -204,17 +224,9 @@ static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
     }
     if (r->closingPixels > 0 && vplTimeLeft(r) - r->lastMs < r->closingMs) {
         *doneOut = true;
-        return traceEdges(r, r->closingPixels);
+        return spendRest(r);
     }
     return VPL_SUCCESS;
-}
-
-// Spends all of the time that is left on paths through those pixels at edges that leave the least error.
-static vplResult traceBestEdges(vplRenderer* r, const vplEdgeStep* steps, int count)
-{
-    vplErrorState s = vplErrorState_Of(r);
-    s.once = true; // no pass follows
-    return traceEdges(r, findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).pixels);
 }
 
 // Patches have no noise. Either there are more of them, whose time grows with the square of their number and whose squared error falls with
@@ -274,12 +286,7 @@ static const double LEAST_REST = 0.1;
 vplResult vplSpendRest(vplRenderer* r)
 {
     const double budget = r->asked.stop.budgetMs;
-    vplEdgeStep steps[VPL_EDGE_STEPS];
-    int count;
-    if (!vplHasTimeAlone(r) || budget < LEAST_MS || !r->plan->progressive || r->edges != NULL ||
-        vplTimeLeft(r) < LEAST_REST * budget) {
-        return VPL_SUCCESS;
-    }
-    TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
-    return traceBestEdges(r, steps, count);
+    const bool enough = budget >= LEAST_MS && vplTimeLeft(r) >= LEAST_REST * budget;
+    return enough && vplHasTimeAlone(r) && r->plan->progressive && r->edges == NULL ? spendRest(r)
+                                                                                    : VPL_SUCCESS;
 }
