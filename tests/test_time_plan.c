@@ -111,7 +111,7 @@ TEST(PlansShrinkUntilTheyFit, 2)
         bool tooLate;
     } ROWS[] = {
         {1e-6, true, 8, 4000, VPL_COMPENSATION_RAYS, false},
-        {1e6, true, 4, 1000, VPL_COMPENSATION_NONE, true},
+        {1e6, true, 1, 250, VPL_COMPENSATION_NONE, true},
         {1e6, false, 2, 640, VPL_COMPENSATION_RAYS, true},
     };
     vplScene* scene = openScene(context, "examples/scenes/textured-room.json");

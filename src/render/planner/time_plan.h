@@ -9,6 +9,13 @@
 // planning has made it; times of virtual lights are multiplied by the pace of the renderer.
 double vplTimeOfFirst(const vplRenderer* renderer);
 
+// A plan becomes smaller until its first picture is foreseen in this share of the time that is left: a picture that is not ready when
+// the time is over is lost.
+#define VPL_SURE_SHARE 0.8
+
+// True if the first picture of the plan is foreseen in this share of the time that is left.
+bool vplIsInTime(const vplRenderer* renderer, double share);
+
 // The share of the time of the first pass that drawing the picture is foreseen to take.
 double vplShareOfPicture(const vplPlan* plan);
 
