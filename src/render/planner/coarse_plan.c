@@ -149,6 +149,10 @@ static vplResult refine(vplRenderer* r)
 // up to 1.7 times the predicted time (flat), so the gather is left out if the prediction is more than SURE_OF_GATHER of the time left.
 static const double SHARE_OF_PATCHES = 0.5, SHARE_OF_GATHER = 0.25, SURE_OF_GATHER = 0.55;
 
+// Patches without a gather are tried even if they are foreseen to take LATEST times the time that is left: what they replace is useless, and the
+// coarse picture stays if they are late.
+static const double LATEST = 1.25;
+
 // Patches that are made already stay where their number is so near to the one that fits.
 static const double FEWER = 0.7;
 
@@ -206,8 +210,8 @@ static vplResult fillTime(vplRenderer* r)
     double patches = fitPatches(r, gathers ? drawingMs(r) * gather / planned.gather : drawingMs(r));
     if (gathers && gather == 0) {
         TRY(planPatches(r, planned.patches, 0));
-        patches = fitPatches(r, drawingMs(r));
-        patches = patches < planned.patches && vplIsInTime(r, VPL_SURE_SHARE) ? planned.patches : patches;
+        patches = fmax(fitPatches(r, drawingMs(r)),
+                       vplIsInTime(r, VPL_SURE_SHARE) ? planned.patches : VPL_FEWEST_PATCHES);
     }
     if (patches < VPL_FEWEST_PATCHES) {
         return vplRenderer_Plan(r, &lights, false);
@@ -216,7 +220,7 @@ static vplResult fillTime(vplRenderer* r)
     if (mayDrop && gather > 0 && !vplIsInTime(r, SURE_OF_GATHER)) {
         TRY(planPatches(r, patches, 0));
     }
-    if (mayDrop && !vplIsInTime(r, VPL_SURE_SHARE)) {
+    if (mayDrop && !vplIsInTime(r, r->plan->options.radiosity.gather > 0 ? VPL_SURE_SHARE : LATEST)) {
         return vplRenderer_Plan(r, &lights, false);
     }
     vplDecide(r->plan, "method", "light that patches exchange has no noise");
