@@ -211,6 +211,8 @@ TEST(PatchesGoWithoutAGatherInAShortTime, 2)
         int gather;
     } ROWS[] = {{2e7, 160, false, VPL_METHOD_RADIOSITY, 16},
                 {3e6, 160, false, VPL_METHOD_RADIOSITY, 0},
+                {1e6, 160, false, VPL_METHOD_RADIOSITY, 0},
+                {9e5, 160, false, VPL_METHOD_RADIOSITY, 0}, // foreseen to be a little late
                 {2e5, 160, false, VPL_METHOD_KELLER, -1},
                 {6e6, 320, true, VPL_METHOD_RADIOSITY, 6},
                 {3e6, 320, true, VPL_METHOD_KELLER, -1}};

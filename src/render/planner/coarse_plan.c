@@ -203,12 +203,13 @@ static vplResult fillTime(vplRenderer* r)
     const vplRadiosityOptions planned = r->plan->options.radiosity;
     const vplRenderOptions lights = vplAskedOfLights(r);
     const bool gathers = planned.gather > 0, mayDrop = gathers && r->plan->patchGroups == 0;
-    const int gather = fitGather(r);
+    int gather = fitGather(r);
     if (gathers && gather == 0 && !mayDrop) {
         return vplRenderer_Plan(r, &lights, false);
     }
     double patches = fitPatches(r, gathers ? drawingMs(r) * gather / planned.gather : drawingMs(r));
-    if (gathers && gather == 0) {
+    if (mayDrop && (gather == 0 || patches < VPL_FEWEST_PATCHES)) {
+        gather = 0;
         TRY(planPatches(r, planned.patches, 0));
         patches = fmax(fitPatches(r, drawingMs(r)),
                        vplIsInTime(r, VPL_SURE_SHARE) ? planned.patches : VPL_FEWEST_PATCHES);
