@@ -135,7 +135,11 @@ static double countPaths(const vplTruth* truth)
     return (double)vplTruth_CountPixels(truth) * vplTruth_Paths(truth);
 }
 
-// A truth of more pixels with at least `paths` paths in all.
+// A wider truth has at least this share of the paths before, all pixels together. Its pixels are a little fewer than VPL_WIDER_TRUTH times as many, so
+// that with all of the paths each pixel had twice as many as it needs.
+static const double AS_MANY = 0.8;
+
+// A truth of more pixels with as many paths in all, or nearly so.
 static vplResult createWiderTruth(const vplRenderer* r, const vplImage* image, double paths,
                                   vplTruth** widerOut)
 {
@@ -143,7 +147,7 @@ static vplResult createWiderTruth(const vplRenderer* r, const vplImage* image, d
     vplTruth* wider;
     TRY(vplTruth_Create(run, image, vplCountWiderTruth(r), &wider));
     vplResult result = VPL_SUCCESS;
-    while (result == VPL_SUCCESS && countPaths(wider) < paths) {
+    while (result == VPL_SUCCESS && countPaths(wider) < AS_MANY * paths) {
         result = vplTruth_Refine(run, wider, 1);
     }
     if (result != VPL_SUCCESS) {
