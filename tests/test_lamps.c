@@ -423,29 +423,48 @@ TEST(ShadowMapsOfManyLampsAreReplacedByRays, 1)
     vplScene_Destroy(scene);
 }
 
+// The method that is planned for an error and a time; 0: none is asked for.
+static vplMethod methodFor(const vplScene* scene, int width, double error, double ms)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    vplPlan* plan;
+    o.output.width = width;
+    o.output.height = width * 9 / 16;
+    o.stop.maxError = error;
+    o.stop.budgetMs = ms;
+    assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+    const vplMethod method = plan->options.method;
+    vplPlan_Destroy(plan);
+    return method;
+}
+
 // Pixels sample area lights by rays unless the time is limited, or the error is large and the picture is not tiny.
 TEST(AreaLightsAreSampledWhereThatIsWorthIt, 1)
 {
-    static const struct {
-        int width;
-        double error, ms;
-        vplMethod method;
-    } ROWS[] = {{320, 0, 0, VPL_METHOD_INSTANT_RADIOSITY},
-                {320, 0.1, 0, VPL_METHOD_INSTANT_RADIOSITY},
-                {320, 0.2, 0, VPL_METHOD_KELLER},
-                {96, 0.2, 0, VPL_METHOD_INSTANT_RADIOSITY},
-                {320, 0.1, 1000, VPL_METHOD_KELLER}};
     vplScene* scene = openScene(context, "examples/scenes/textured-room.json");
-    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
-        vplRenderOptions o = vplDefaultRenderOptions();
-        vplPlan* plan;
-        o.output.width = ROWS[i].width;
-        o.output.height = ROWS[i].width * 9 / 16;
-        o.stop.maxError = ROWS[i].error;
-        o.stop.budgetMs = ROWS[i].ms;
-        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
-        assert_int_equal(plan->options.method, ROWS[i].method);
-        vplPlan_Destroy(plan);
-    }
+    assert_int_equal(methodFor(scene, 320, 0, 0), VPL_METHOD_INSTANT_RADIOSITY);
+    assert_int_equal(methodFor(scene, 320, 0.1, 0), VPL_METHOD_INSTANT_RADIOSITY);
+    assert_int_equal(methodFor(scene, 320, 0.2, 0), VPL_METHOD_KELLER);
+    assert_int_equal(methodFor(scene, 96, 0.2, 0), VPL_METHOD_INSTANT_RADIOSITY);
+    assert_int_equal(methodFor(scene, 320, 0.1, 1000), VPL_METHOD_KELLER);
+    vplScene_Destroy(scene);
+}
+
+// Direct light is enough above dark ground. But for a large error virtual lights serve the sky in less time, except in tiny pictures.
+TEST(TheSkyIsSampledWhereThatIsWorthIt, 1)
+{
+    vplScene* scene = newScene(context);
+    vplEnvironmentDef sky = vplDefaultEnvironmentDef();
+    addThing(scene, VPL_OBJECT_QUAD, addGrey(scene, 0.05f, 0), vplVec(0, 0, 0), -1.5707963, 0,
+             vplVec(20, 20, 1));
+    addCamera(scene, vplVec(0, 2, 6), vplVec(0, 0, 0), 1);
+    addEmitter(scene, VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(0, -1, 0), 1);
+    assert_int_equal(methodFor(scene, 320, 0.2, 0), VPL_METHOD_DIRECT);
+    sky.type = VPL_ENVIRONMENT_CONSTANT;
+    sky.radiance = (vplRgb){1, 1, 1};
+    assert_int_equal(vplScene_SetEnvironment(scene, &sky), VPL_SUCCESS);
+    assert_int_equal(methodFor(scene, 320, 0.12, 0), VPL_METHOD_DIRECT);
+    assert_int_equal(methodFor(scene, 320, 0.2, 0), VPL_METHOD_KELLER);
+    assert_int_equal(methodFor(scene, 96, 0.2, 0), VPL_METHOD_DIRECT);
     vplScene_Destroy(scene);
 }

@@ -11,11 +11,28 @@
 // The error that a render without goals is made for.
 static const double USUAL_ERROR = 0.05;
 
+// From this error on Keller's lights serve area lights and the sky, too, except in tiny pictures: pixels that sample these themselves take longer. At
+// 20 % and 320x180 (medians of three) shop takes 0.2 s instead of 0.6, street 0.15 instead of 0.31, shade 12 instead of 16, grove 0.17 instead of 0.95;
+// at 96x54 shade would take 5.8 s instead of 3.2.
+static const double COARSE_ERROR = 0.15;
+
+static bool isCoarse(const vplRenderOptions* o)
+{
+    return o->stop.maxError >= COARSE_ERROR && !vplIsTinyPicture(o);
+}
+
 // Light that is reflected at least once over all light, about: from a mean surface of the scene it goes on to others, but
 // not into the open.
 static double reflectedShare(const vplRunner* r, const vplLook* look)
 {
     return vplGeometry_MeanReflectance(r->run.results[VPL_STAGE_GEOMETRY]) * (1 - look->open);
+}
+
+// True if pixels sample area lights or the sky for direct light.
+static bool samplesDirect(const vplRunner* r)
+{
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    return g->emittingArea > 0 || vplScene_GetEnvironment(r->run.scene)->type != VPL_ENVIRONMENT_NONE;
 }
 
 // Direct light alone where all other light is well below the error, and in black scenes.
@@ -24,7 +41,8 @@ static bool chooseDirect(const vplRunner* r, vplPlan* p, double error)
     vplRenderOptions* o = &p->options;
     const double share = reflectedShare(r, &p->look);
     const bool can = (vplMethodsFor(o) & VPL_USE_DIRECT) != 0 && o->output.show == VPL_SHOW_PICTURE;
-    if (can && p->look.points > 0 && (share <= 0 || 1.5 * share < error)) {
+    const bool slower = isCoarse(o) && samplesDirect(r);
+    if (can && p->look.points > 0 && (share <= 0 || (1.5 * share < error && !slower))) {
         o->method = VPL_METHOD_DIRECT;
         vplDecide(p, "method",
                   "reflected light is about %.3g %% of all, %.3g %% of the directions lead into the open",
@@ -170,10 +188,6 @@ static bool samplesLamps(const vplRunner* r, const vplRenderOptions* o)
            (vplMethodsFor(o) & VPL_USE_INSTANT_RADIOSITY) != 0 && hasLamps(r);
 }
 
-// From this error on Keller's lights serve area lights, too, except in tiny pictures. At 20 % and 320x180 (medians of three) shop takes 0.2 s instead of
-// 0.6, street 0.15 instead of 0.31, shade 12 instead of 16; at 96x54 shade would take 5.8 s instead of 3.2.
-static const double COARSE_ERROR = 0.15;
-
 // All of Keller's defaults but for the lights on area lights.
 static void sampleLamps(vplPlan* p)
 {
@@ -222,7 +236,7 @@ vplResult vplChooseMethod(vplRunner* r, vplPlan* p)
     TRY(vplRunner_RunStage(r, VPL_STAGE_GEOMETRY));
     TRY(vplTakeLook(r, p, &p->look));
     if (!chooseDirect(r, p, error) && !vplChoosePatches(r, p)) {
-        const bool lamps = (error < COARSE_ERROR || vplIsTinyPicture(o)) && samplesLamps(r, o);
+        const bool lamps = !isCoarse(o) && samplesLamps(r, o);
         if (!lamps) {
             vplDecide(p, "method",
                       patchesMayFollow(r, p)
