@@ -39,7 +39,7 @@ bool vplStopGrowth(vplRenderer* renderer);
 // promises less error, and spends the last part of the time on paths through pixels at edges where these do.
 vplResult vplSpendTime(vplRenderer* renderer, bool* doneOut);
 
-// Traces paths through pixels at edges in the time that is left, if it is too short for another pass.
+// In the time that is left, if it is too short for another pass: traces paths through pixels at edges, and then more of the truth.
 vplResult vplSpendRest(vplRenderer* renderer);
 
 #endif
