@@ -545,8 +545,9 @@ TEST(ATruthWithMorePixelsIsSaved, 2, SLOW)
     const int pixels = vplTruth_CountPixels(r->truth), paths = vplTruth_Paths(r->truth);
     assert_int_equal(vplWidenTruth(r), VPL_SUCCESS);
     assert_in_range(vplTruth_CountPixels(r->truth), 2 * pixels, VPL_WIDER_TRUTH * pixels);
-    assert_in_range(vplTruth_Paths(r->truth) * vplTruth_CountPixels(r->truth), pixels * paths,
-                    2 * pixels * paths);
+    // At least 0.8 of the paths before, as their number through each pixel doubles.
+    assert_in_range(vplTruth_Paths(r->truth) * vplTruth_CountPixels(r->truth), 4 * pixels * paths / 5,
+                    8 * pixels * paths / 5);
     assert_int_equal(vplRenderer_Save(r, path), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Create(scene, &o, &loaded), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Load(loaded, path, &done), VPL_SUCCESS);
