@@ -99,6 +99,15 @@ vplSpeeds slowerSpeeds(double factor)
     return speeds;
 }
 
+vplRenderOptions plannedOptions(const vplScene* scene, const vplRenderOptions* o)
+{
+    vplPlan* plan;
+    assert_int_equal(vplPlan_Create(scene, o, NULL, &plan), VPL_SUCCESS);
+    const vplRenderOptions options = plan->options;
+    vplPlan_Destroy(plan);
+    return options;
+}
+
 vplContext* openTestContext(int workers)
 {
     vplContext* context = openIsaContext(workers, VPL_ISA_AUTO);

@@ -62,6 +62,9 @@ vplContext* openTestContext(int workers);
 // The usual speeds of a machine whose parts of the work take `factor` times as long.
 vplSpeeds slowerSpeeds(double factor);
 
+// The options of the plan for a scene.
+vplRenderOptions plannedOptions(const vplScene* scene, const vplRenderOptions* o);
+
 // Does the same with a chosen instruction set; NULL if this machine lacks it.
 vplContext* openIsaContext(int workers, vplIsa isa);
 

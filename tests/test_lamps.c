@@ -427,15 +427,11 @@ TEST(ShadowMapsOfManyLampsAreReplacedByRays, 1)
 static vplMethod methodFor(const vplScene* scene, int width, double error, double ms)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
-    vplPlan* plan;
     o.output.width = width;
     o.output.height = width * 9 / 16;
     o.stop.maxError = error;
     o.stop.budgetMs = ms;
-    assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
-    const vplMethod method = plan->options.method;
-    vplPlan_Destroy(plan);
-    return method;
+    return plannedOptions(scene, &o).method;
 }
 
 // Pixels sample area lights by rays unless the time is limited, or the error is large and the picture is not tiny.

@@ -15,19 +15,9 @@ static vplRenderOptions optionsFor(double error)
     return o;
 }
 
-// The options of the plan for `o`.
-static vplRenderOptions planned(const vplScene* scene, const vplRenderOptions* o)
-{
-    vplPlan* plan;
-    assert_int_equal(vplPlan_Create(scene, o, NULL, &plan), VPL_SUCCESS);
-    const vplRenderOptions options = plan->options;
-    vplPlan_Destroy(plan);
-    return options;
-}
-
 static vplMethod methodFor(const vplScene* scene, const vplRenderOptions* o)
 {
-    return planned(scene, o).method;
+    return plannedOptions(scene, o).method;
 }
 
 TEST(PatchesAreChosenWhereTheyAreLikelyToBeCheaper, 2)
@@ -115,7 +105,7 @@ static vplRenderOptions plannedForLamps(vplContext* context, int lamps, double e
     vplRenderOptions o = optionsFor(error);
     o.output.width = 320;
     o.output.height = 180;
-    o = planned(scene, &o);
+    o = plannedOptions(scene, &o);
     vplScene_Destroy(scene);
     return o;
 }
@@ -394,7 +384,7 @@ TEST(TinyPicturesBeginWithMorePatches, 2)
         vplRenderOptions o = optionsFor(ROWS[i].error);
         o.output.width = ROWS[i].width;
         o.output.height = ROWS[i].width * 9 / 16;
-        o = planned(scene, &o);
+        o = plannedOptions(scene, &o);
         assert_int_equal(o.method, VPL_METHOD_RADIOSITY);
         assert_int_equal(o.radiosity.patches, ROWS[i].patches);
     }
@@ -423,7 +413,7 @@ static int sharedBy(const vplScene* scene, int width, double error, double ms)
     o.stop.budgetMs = ms;
     o.output.width = width;
     o.output.height = width * 9 / 16;
-    o = planned(scene, &o);
+    o = plannedOptions(scene, &o);
     return o.method == VPL_METHOD_RADIOSITY ? o.radiosity.gather : o.pipeline.interleave;
 }
 
@@ -447,7 +437,7 @@ static int patchesFor(const vplScene* scene, double error)
     vplRenderOptions o = optionsFor(error);
     o.output.width = 320;
     o.output.height = 180;
-    o = planned(scene, &o);
+    o = plannedOptions(scene, &o);
     assert_int_equal(o.method, VPL_METHOD_RADIOSITY);
     return o.radiosity.patches;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// OpenEXR pictures by OpenEXRCore: what its writer and its reader share. Pixels and the encoded file are in context memory.
-// OpenEXRCore's own scratch memory, a few scanlines, is not: its allocation hooks take no user data. It never touches files
-// itself, because vplWriteFile writes them whole or not at all.
+// OpenEXR pictures by OpenEXRCore: what the writer and the reader share. Pixels and the encoded file are in context memory. The scratch memory of
+// OpenEXRCore, a few scanlines, is not, because its allocation hooks take no user data. OpenEXRCore reads and writes memory only: vplWriteFile
+// writes files whole or not at all.
 #ifndef VPL_IMAGE_EXR_H
 #define VPL_IMAGE_EXR_H
 
@@ -32,7 +32,7 @@ typedef struct vplExrStream {
 // The set-up of an OpenEXRCore context that uses the stream, to write if the stream has a buffer, else to read.
 exr_context_initializer_t vplDescribeExrStream(vplExrStream* stream);
 
-// Index in our pixels of a channel of the layer `name`, or -1. Grey and single channels are stored in red
+// Finds the place of a channel of the layer `name` in our pixels: 0 for red to 2 for blue, or -1. Grey and single channels are stored in red
 // first.
 // Source: layers and the names of channels are those of "Channel Names" and "Layers" in OpenEXR's Technical
 // Introduction.

@@ -16,8 +16,7 @@ vplResult vplEncodeExrLayers(const vplLayer* layers, int count, vplByteBuffer* b
 
 #include <stdio.h>
 
-// Adds the channels of layer i. OpenEXRCore must not see one twice: it would wait for itself for ever when
-// the file is closed.
+// Adds the channels of layer i. A channel that is added twice would make OpenEXRCore hang when the file is closed, so it is refused.
 static exr_result_t addChannels(exr_context_t exr, int part, const vplLayer* layers, int i)
 {
     const vplLayer* layer = &layers[i];

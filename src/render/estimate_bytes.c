@@ -185,7 +185,7 @@ static vplStageBytes picture(const vplPlanScale* s)
     scratch += s->plan->keepsGbuffer ? 0 : RASTER_VIEW * s->triangles;
     scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
-    // What is behind all surfaces is a picture of its own, when the memory of interleaved shading is free again.
+    // The background is a picture of its own, which is drawn when the memory of interleaved shading is free again.
     scratch += s->plan->hasSky && s->plan->showsDirect && !vplPixelsShareLight(s->plan) ? 12 * s->pixels : 0;
     scratch += s->plan->showsVirtual ? lightScratch(s) : 0;
     scratch += 48.0 * s->plan->emitterCount * (s->plan->compensates ? 2 : 1); // emitters as kernels read them

@@ -10,7 +10,7 @@ typedef struct vplStageBytes {
     double held, scratch;
 } vplStageBytes;
 
-// What the memory depends on.
+// The counts of a plan from which the memory of its stages follows.
 typedef struct vplPlanScale {
     const vplPlan* plan;
     double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
@@ -19,10 +19,10 @@ typedef struct vplPlanScale {
     vplSharedBytes factors;                                           // of all pairs
 } vplPlanScale;
 
-// A stage of the plan.
+// Estimates the memory of a stage of the plan.
 vplStageBytes vplEstimateStage(const vplPlanScale* scale, vplStageId id);
 
-// Layers when the last of them is drawn, besides what the render holds: pictures, and their scratch memory.
+// Estimates the memory of layers while the last of them is drawn, besides what the render holds: their pictures and scratch memory.
 vplStageBytes vplEstimateLayers(const vplPlanScale* scale);
 
 #endif

@@ -33,8 +33,8 @@ static void forget(vplRenderer* r)
     r->weight = r->passMs = r->lastMs = 0;
     r->error = (vplErrorParts){-1, -1, -1};
     r->judgedNoise = 0;
-    r->coarserSquare = r->closingMs = 0;
-    r->closingPixels = 0;
+    r->coarserSquare = 0;
+    r->closingMs = -1;
 }
 
 // A plan that may follow the one under way.

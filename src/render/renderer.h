@@ -76,11 +76,11 @@ struct vplRenderer {
     double baseMs, lastMs;  // of its last pass: time of direct light, and the rest
     double deadline;        // ms; infinite: none
     double pace;            // the time of the coarse picture over that foreseen for it; 1: unknown
-    int closingPixels;      // at edges, foreseen for the last part of the time; 0: not known yet, -1: none
-    double closingMs;       // this part
-    bool late;              // the deadline has ended a step
-    double watched;         // ms, when progress was last reported
-    double gap; // ms, longest time between two reports: so much later a pass may end that is cancelled
+    double
+        closingMs; // the last part of the time, which is for pixels at edges; 0: there is none, negative: not known yet
+    bool late;      // the deadline has ended a step
+    double watched; // ms, when progress was last reported
+    double gap;     // ms, longest time between two reports: so much later a pass may end that is cancelled
     vplKeptPicture kept;
     bool
         showsKept; // the kept picture was given to the caller, because it is better than that of the plan under way

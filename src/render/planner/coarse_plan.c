@@ -149,8 +149,8 @@ static vplResult refine(vplRenderer* r)
 // up to 1.7 times the predicted time (flat), so the gather is left out if the prediction is more than SURE_OF_GATHER of the time left.
 static const double SHARE_OF_PATCHES = 0.5, SHARE_OF_GATHER = 0.25, SURE_OF_GATHER = 0.55;
 
-// Patches without a gather are tried even if they are foreseen to take LATEST times the time that is left: what they replace is useless, and the
-// coarse picture stays if they are late.
+// Patches without a gather are tried even if they are foreseen to take LATEST times the time that is left: virtual lights, which would follow
+// instead, are useless there, and the coarse picture stays if the patches are late.
 static const double LATEST = 1.25;
 
 // Patches that are made already stay where their number is so near to the one that fits.

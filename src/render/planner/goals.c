@@ -135,11 +135,11 @@ static double countPaths(const vplTruth* truth)
     return (double)vplTruth_CountPixels(truth) * vplTruth_Paths(truth);
 }
 
-// A wider truth has at least this share of the paths before, all pixels together. Its pixels are a little fewer than VPL_WIDER_TRUTH times as many, so
-// that with all of the paths each pixel had twice as many as it needs.
+// Over all pixels, a wider truth has at least this share of the paths of the truth before. With a share of 1 each pixel mostly had twice as many
+// paths as needed: paths double, and the pixels are a little fewer than VPL_WIDER_TRUTH times as many.
 static const double AS_MANY = 0.8;
 
-// A truth of more pixels with as many paths in all, or nearly so.
+// Creates a truth of more pixels with about as many paths in all.
 static vplResult createWiderTruth(const vplRenderer* r, const vplImage* image, double paths,
                                   vplTruth** widerOut)
 {

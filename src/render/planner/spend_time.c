@@ -187,22 +187,23 @@ static vplResult learnError(vplRenderer* r, bool (*isEnough)(const vplRenderer* 
     return VPL_SUCCESS;
 }
 
-// Spends all of the time that is left on paths through those pixels at edges that leave the least error.
-static vplResult traceBestEdges(vplRenderer* r, const vplEdgeStep* steps, int count)
+// Spends the rest of the time on paths through those pixels at edges that leave the least error, and what these leave of it on paths of the
+// truth, which lower the bound of the error.
+static vplResult spendRest(vplRenderer* r, const vplEdgeStep* steps, int count)
 {
     vplErrorState s = vplErrorState_Of(r);
     s.once = true; // no pass follows
-    return traceEdges(r, findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).pixels);
+    TRY(traceEdges(r, findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).pixels));
+    return learnError(r, isSure);
 }
 
-// Spends the rest of the time on paths at edges, and what they leave of it on paths of the truth.
-static vplResult spendRest(vplRenderer* r)
+// Looks for pixels at edges, and spends the rest of the time.
+static vplResult lookAndSpend(vplRenderer* r)
 {
     vplEdgeStep steps[VPL_EDGE_STEPS];
     int count;
     TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
-    TRY(traceBestEdges(r, steps, count));
-    return learnError(r, isSure);
+    return spendRest(r, steps, count);
 }
 
 // The planner looks for other plans once, when a sixth of the time is over, and for edges in the second half of it.
@@ -213,25 +214,22 @@ static vplResult spendOnPasses(vplRenderer* r, bool* doneOut)
         TRY(judge(r, SHARE_OF_TRUTH));
         TRY(choosePlan(r, doneOut));
     }
-    if (r->done >= 2 && left < 0.5 && r->closingPixels == 0) {
+    if (r->done >= 2 && left < 0.5 && r->closingMs < 0) {
         vplEdgeStep steps[VPL_EDGE_STEPS];
         int count;
         TRY(lookForEdges(r, SHARE_OF_TRUTH, steps, &count));
         const vplErrorState s = vplErrorState_Of(r);
-        const Closing closing = findClosing(r, &s, steps, count, 1, vplTimeLeft(r));
-        r->closingPixels = closing.pixels > 0 ? closing.pixels : -1; // one look is enough
-        r->closingMs = closing.ms;
+        r->closingMs = findClosing(r, &s, steps, count, 1, vplTimeLeft(r)).ms;
     }
-    if (r->closingPixels > 0 && vplTimeLeft(r) - r->lastMs < r->closingMs) {
+    if (r->closingMs > 0 && vplTimeLeft(r) - r->lastMs < r->closingMs) {
         *doneOut = true;
-        return spendRest(r);
+        return lookAndSpend(r);
     }
     return VPL_SUCCESS;
 }
 
 // Patches have no noise. Either there are more of them, whose time grows with the square of their number and whose squared error falls with
 // it, and paths at edges follow in what is left of the time; or these paths come at once, after more paths of the truth if the error is unknown.
-// Further paths of the truth use the rest of the time; they lower the bound of the error.
 static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
 {
     static const double MORE[] = {1.5, 2, 3, 4, 6};
@@ -265,8 +263,7 @@ static vplResult spendOnPatches(vplRenderer* r, bool* doneOut)
         TRY(learnError(r, isKnown));
         TRY(findKnownSteps(r, steps, &count));
     }
-    TRY(traceBestEdges(r, steps, count));
-    return learnError(r, isSure);
+    return spendRest(r, steps, count);
 }
 
 vplResult vplSpendTime(vplRenderer* r, bool* doneOut)
@@ -287,6 +284,6 @@ vplResult vplSpendRest(vplRenderer* r)
 {
     const double budget = r->asked.stop.budgetMs;
     const bool enough = budget >= LEAST_MS && vplTimeLeft(r) >= LEAST_REST * budget;
-    return enough && vplHasTimeAlone(r) && r->plan->progressive && r->edges == NULL ? spendRest(r)
+    return enough && vplHasTimeAlone(r) && r->plan->progressive && r->edges == NULL ? lookAndSpend(r)
                                                                                     : VPL_SUCCESS;
 }

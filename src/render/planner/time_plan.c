@@ -49,7 +49,7 @@ static bool comesTooLate(const vplRenderer* r)
 
 // ---- smaller plans
 
-// Less and less of what a plan of virtual lights has: samples per pixel, a share of its particles, and rays that compensate the clamp.
+// Smaller and smaller plans of virtual lights: samples per pixel, the share of particles, and whether rays compensate the clamp.
 // Smooth edges come first: 250 particles without these rays leave 48 % of error in sibenik-spot, 34 in conference-spot with one sample
 // per pixel, 27 and 27 with four in twice the time, 24 and 22 with 125 particles and rays in six and nine times the time.
 // The last plan is as small as the coarse picture before it and adds more lights to it: without it a slow machine ended early
