@@ -130,8 +130,8 @@ TEST(TreeAgreesWithAllTriangles, 1)
         addShape(scene, &soup, false, NULL);
         vplGeometry* g = buildGeometry(scene);
         vplBvh *tree, *all;
-        assert_int_equal(vplBvh_Create(g, 0, &tree), VPL_SUCCESS);
-        assert_int_equal(vplBvh_Create(g, INT_MAX, &all), VPL_SUCCESS);
+        assert_int_equal(vplBvh_Create(g, 0, false, &tree), VPL_SUCCESS);
+        assert_int_equal(vplBvh_Create(g, INT_MAX, false, &all), VPL_SUCCESS);
         assert_true(tree->nodeCount > 1 && all->nodes == NULL && all->blockCount >= 25);
         const float extent = vplGeometry_Diagonal(g);
         int hits = 0;

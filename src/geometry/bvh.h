@@ -54,12 +54,14 @@ typedef struct vplBvh {
     vplBlockMarks* marks; // per block; NULL: none has any
     int nodeCount, blockCount;
     double cost;            // of a ray, relative, when it was built
+    bool quick;             // by vplGeometry_BuildTree
     struct vplArena* arena; // owns the arrays
 } vplBvh;
 
 // Builds the tree over all triangles of positive area, with all workers: the same tree for any number of
-// them. Up to `bruteBlocks` blocks (usually VPL_BRUTE_BLOCKS) it has no nodes.
-vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut);
+// them. Up to `bruteBlocks` blocks (usually VPL_BRUTE_BLOCKS) it has no nodes. A quick tree is built in 0.4 of the time,
+// from groups of triangles; rays have the same hits and take up to 1.2 times as long, packets up to 1.7 times.
+vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, bool quick, vplBvh** bvhOut);
 void vplBvh_Destroy(vplBvh* bvh);
 
 // Updates the triangles of moved objects and the boxes around them; changes[i] has VPL_OBJECT_MOVED if object i was moved.
@@ -70,6 +72,9 @@ bool vplBvh_Refit(vplBvh* bvh, const vplGeometry* geometry, const uint8_t* chang
 // The expected cost of a ray, by the surface area heuristic: sums the surfaces of the boxes of nodes and blocks, in square
 // metres.
 double vplBvh_Cost(const vplBvh* bvh);
+
+// As vplGeometry_BuildRayTree, which builds no quick tree.
+vplResult vplGeometry_BuildTree(vplGeometry* geometry, bool quick);
 
 // The box of three corners, padded as vplBoundTriangle says.
 vplBox vplBoundCorners(const vplVec3 corners[3]);

@@ -47,7 +47,7 @@ static int buildRange(const vplBvhBuilder* b, const vplBuildRange* range, int de
     const int index = (*next)++;
     vplBinary* node = setNode(b, index, range);
     vplBuildCosts halfCosts[2];
-    if (range->count > VPL_BINARY_LEAF) {
+    if (range->count > b->leaf) {
         vplBuildRange halves[2];
         vplSplitRange(b, range, depth, halves);
         node->left = buildRange(b, &halves[0], depth + 1, next, &halfCosts[0]);
@@ -133,7 +133,7 @@ static vplResult buildTree(vplBvhBuilder* b, const vplBuildRange* all, vplBvh* b
     return vplCollapse(b, placeOf(top, 0), bvh);
 }
 
-static vplResult build(vplBvhBuilder* b, int bruteBlocks, vplBvh* bvh)
+static vplResult build(vplBvhBuilder* b, int bruteBlocks, bool quick, vplBvh* bvh)
 {
     vplBuildRange all;
     TRY(vplCollectItems(b, &all));
@@ -141,18 +141,28 @@ static vplResult build(vplBvhBuilder* b, int bruteBlocks, vplBvh* bvh)
         return VPL_SUCCESS;
     }
     const bool brute = (all.count + VPL_BVH_WIDTH - 1) / VPL_BVH_WIDTH <= bruteBlocks;
-    return brute ? vplMakeBlocks(b, all.count, bvh) : buildTree(b, &all, bvh);
+    if (brute) {
+        return vplMakeBlocks(b, all.count, bvh);
+    }
+    if (quick) {
+        TRY(vplGroupItems(b, &all));
+    }
+    return buildTree(b, &all, bvh);
 }
 
-vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut)
+vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, bool quick, vplBvh** bvhOut)
 {
     vplArena* arena = vplArena_Create(geometry->context);
-    vplBvhBuilder b = {.geometry = geometry, .scratch = vplArena_Create(geometry->context)};
+    vplBvhBuilder b = {.geometry = geometry,
+                       .scratch = vplArena_Create(geometry->context),
+                       .leaf = 2,
+                       .perBlock = VPL_BVH_WIDTH};
     vplBvh* bvh = vplArena_AllocZero(arena, 1, sizeof *bvh);
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
         bvh->arena = arena;
-        result = build(&b, bruteBlocks, bvh);
+        bvh->quick = quick;
+        result = build(&b, bruteBlocks, quick, bvh);
     }
     vplArena_Destroy(b.scratch);
     return vplArena_Deliver(arena, result, bvh, bvhOut);

@@ -58,7 +58,7 @@ void vplFinishNode(const vplBvhBuilder* b, vplBinary* node, const vplBuildCosts*
                    const vplBuildCosts* right, vplBuildCosts* costs)
 {
     const float area = vplHalfSurface(b, &node->box);
-    const float block = node->count <= VPL_BVH_WIDTH ? BLOCK_COST * area : INFINITY;
+    const float block = node->count <= b->perBlock ? BLOCK_COST * area : INFINITY;
     if (node->left < 0) {
         finishLeaf(b, node, block, costs);
     } else {
@@ -77,9 +77,7 @@ void vplFinishNode(const vplBvhBuilder* b, vplBinary* node, const vplBuildCosts*
 typedef struct Collapse {
     const vplBvhBuilder* builder;
     vplBvh* bvh;
-    struct BlockItems {
-        int first, count;
-    } * blockItems; // NULL during the first walk
+    vplItemRange* blockItems; // NULL during the first walk
 } Collapse;
 
 // Lists the at most `count` children that the subtree becomes.
@@ -126,7 +124,7 @@ static int32_t addChild(Collapse* c, int index, bool mustBeNode)
     vplBvh* bvh = c->bvh;
     if (from->left < 0 || (from->isBlock && !mustBeNode)) {
         if (filling) {
-            c->blockItems[bvh->blockCount] = (struct BlockItems){from->first, from->count};
+            c->blockItems[bvh->blockCount] = (vplItemRange){from->first, from->count};
         }
         return ~bvh->blockCount++;
     }
@@ -152,8 +150,13 @@ static int32_t addChild(Collapse* c, int index, bool mustBeNode)
 
 static void fillBlock(const Collapse* c, int index)
 {
-    const struct BlockItems* items = &c->blockItems[index];
-    const int32_t* from = c->builder->ids + items->first;
+    const vplBvhBuilder* b = c->builder;
+    const vplItemRange* items = &c->blockItems[index];
+    const int32_t* from = b->ids + items->first;
+    if (b->clusters != NULL) {
+        items = &b->clusters[*from];
+        from = b->members + items->first;
+    }
     int32_t ids[VPL_BVH_WIDTH];
     for (int i = 0; i < items->count; i++) { // sorted by insertion
         int at = i;
@@ -219,7 +222,7 @@ vplResult vplMakeBlocks(const vplBvhBuilder* builder, int itemCount, vplBvh* bvh
     TRY(allocate(&c));
     for (int i = 0; i < bvh->blockCount; i++) {
         const int first = i * VPL_BVH_WIDTH, rest = itemCount - first;
-        c.blockItems[i] = (struct BlockItems){first, rest < VPL_BVH_WIDTH ? rest : VPL_BVH_WIDTH};
+        c.blockItems[i] = (vplItemRange){first, rest < VPL_BVH_WIDTH ? rest : VPL_BVH_WIDTH};
     }
     fillAllBlocks(&c);
     return VPL_SUCCESS;

@@ -9,16 +9,11 @@
 
 enum { BINS = 16, FEWER_BINS = 8, FEW_ITEMS = 16, HALVING_DEPTH = VPL_BVH_DEPTH - 32 };
 
-static inline vplFour centreOf(const vplBox* item)
-{
-    return 0.5f * item->low + 0.5f * item->high;
-}
-
-static vplBuildRange makeRange(const vplBvhBuilder* b, int first, int count)
+vplBuildRange vplMakeRange(const vplBvhBuilder* b, int first, int count)
 {
     vplBuildRange range = {vplBox_Empty(), vplBox_Empty(), first, count};
     for (int i = first; i < first + count; i++) {
-        const vplFour centre = centreOf(&b->items[i]);
+        const vplFour centre = vplCentreOf(&b->items[i]);
         range.box = vplBox_Join(range.box, b->items[i]);
         range.centres = vplBox_Join(range.centres, (vplBox){centre, centre});
     }
@@ -64,7 +59,7 @@ static void collectChunk(void* data, int chunk, int worker)
             c->builder->ids[first + count++] = i;
         }
     }
-    c->ranges[chunk] = makeRange(c->builder, first, count);
+    c->ranges[chunk] = vplMakeRange(c->builder, first, count);
 }
 
 // Moves the items of all chunks together.
@@ -120,10 +115,7 @@ static Binning makeBinning(const vplBuildRange* range)
 {
     Binning b = {.count = range->count <= FEW_ITEMS ? FEWER_BINS : BINS};
     b.from = range->centres.low;
-    for (int axis = 0; axis < 3; axis++) {
-        const float size = range->centres.high[axis] - range->centres.low[axis];
-        b.scale[axis] = size > 0x1p-100f && size < INFINITY ? (float)b.count / size : 0;
-    }
+    b.scale = vplScaleCentres(&range->centres, b.count);
     return b;
 }
 
@@ -139,7 +131,7 @@ static inline int binOf(const Binning* b, const vplBox* item, int axis)
 static inline vplFourInts binsOf(const Binning* b, const vplBox* item)
 {
     const vplFour last = vplFour_Of((float)(b->count - 1)), none = {0, 0, 0, 0};
-    const vplFour bins = (centreOf(item) - b->from) * b->scale;
+    const vplFour bins = (vplCentreOf(item) - b->from) * b->scale;
     return __builtin_convertvector(vplFour_Max(vplFour_Min(bins, last), none), vplFourInts);
 }
 
@@ -216,6 +208,6 @@ void vplSplitRange(const vplBvhBuilder* b, const vplBuildRange* range, int depth
         const int parted = split.cost < INFINITY ? partition(b, range, &binning, &split) : 0;
         left = parted > 0 && parted < range->count ? parted : left; // centres of boxes near FLT_MAX overflow
     }
-    halvesOut[0] = makeRange(b, range->first, left);
-    halvesOut[1] = makeRange(b, range->first + left, range->count - left);
+    halvesOut[0] = vplMakeRange(b, range->first, left);
+    halvesOut[1] = vplMakeRange(b, range->first + left, range->count - left);
 }

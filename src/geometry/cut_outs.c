@@ -197,7 +197,7 @@ static vplResult buildTree(const vplGeometry* g, const uint8_t* is, vplBvh** tre
 {
     Inverse inverse;
     TRY(invert(g, is, &inverse));
-    const vplResult result = vplBvh_Create(&inverse.geometry, VPL_BRUTE_BLOCKS, treeOut);
+    const vplResult result = vplBvh_Create(&inverse.geometry, VPL_BRUTE_BLOCKS, false, treeOut);
     vplFree(g->context, inverse.solid);
     return result;
 }

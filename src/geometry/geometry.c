@@ -241,11 +241,15 @@ vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geome
     return vplArena_Deliver(arena, result, g, geometryOut);
 }
 
+vplResult vplGeometry_BuildTree(vplGeometry* g, bool quick)
+{
+    return g->rayTree != NULL ? VPL_SUCCESS : vplBvh_Create(g, VPL_BRUTE_BLOCKS, quick, &g->rayTree);
+}
+
 vplResult vplGeometry_BuildRayTree(vplGeometry* geometry)
 {
     REQUIRE(CONTEXT_OF(geometry), geometry);
-    return geometry->rayTree != NULL ? VPL_SUCCESS
-                                     : vplBvh_Create(geometry, VPL_BRUTE_BLOCKS, &geometry->rayTree);
+    return vplGeometry_BuildTree(geometry, false);
 }
 
 vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)

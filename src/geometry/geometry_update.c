@@ -115,9 +115,10 @@ static vplResult updateTrees(vplGeometry* g, const uint8_t* changes)
     if (g->rayTree == NULL || (!moved && !solid) || (!solid && vplBvh_Refit(g->rayTree, g, changes))) {
         return VPL_SUCCESS;
     }
+    const bool quick = g->rayTree->quick;
     vplBvh_Destroy(g->rayTree);
     g->rayTree = NULL;
-    return vplGeometry_BuildRayTree(g);
+    return vplGeometry_BuildTree(g, quick);
 }
 
 static vplResult update(vplGeometry* g, const vplScene* scene, uint8_t* changes)

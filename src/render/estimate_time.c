@@ -38,6 +38,17 @@ double vplTimeOf(const vplSpeeds* speeds, const vplWork* work)
     return 1e-6 * sum;
 }
 
+static double countThreads(const vplSpeeds* speeds, int workers)
+{
+    return speeds->threads > 0 ? fmin(speeds->threads, workers) : 0.1 + 0.9 * workers;
+}
+
+double vplTimeOfTree(const vplContext* context, int triangles)
+{
+    const vplSpeeds speeds = context->speeds != NULL ? *context->speeds : vplUsualSpeeds();
+    return 1e-6 * triangles * speeds.buildTriangle / countThreads(&speeds, context->workerCount);
+}
+
 // Stages that each pass runs again.
 static bool isPerPass(int id)
 {
@@ -61,7 +72,7 @@ void vplEstimateTime(const vplRunner* r, const vplMachine* machine, vplPlan* p)
     const vplSpeeds* given = machine != NULL ? machine->speeds : context->speeds;
     const vplSpeeds speeds = given != NULL ? *given : vplUsualSpeeds();
     const int workers = machine != NULL ? machine->workerCount : context->workerCount;
-    const double threads = speeds.threads > 0 ? fmin(speeds.threads, workers) : 0.1 + 0.9 * workers;
+    const double threads = countThreads(&speeds, workers);
     vplWork works[VPL_MAX_PLAN_STAGES];
     double once = 0, each = 0;
     p->usualSpeeds = given == NULL;

@@ -118,6 +118,9 @@ typedef struct vplWork {
 // The work of each stage of the plan in one pass, in the order of plan->stages.
 void vplCountWork(const vplRunner* runner, const vplPlan* plan, vplWork works[VPL_MAX_PLAN_STAGES]);
 
+// Milliseconds that all workers take for the geometry and its ray tree.
+double vplTimeOfTree(const vplContext* context, int triangles);
+
 // Milliseconds of one thread.
 double vplTimeOf(const vplSpeeds* speeds, const vplWork* work);
 

@@ -148,8 +148,8 @@ int main(int argc, char** argv)
     vplScene* scene;
     openScene(argc > 1 ? argv[1] : "examples/scenes/room.json", 0, VPL_ISA_AUTO, &b.context, &scene);
     check(vplGeometry_Create(scene, &b.geometry));
-    check(vplBvh_Create(b.geometry, 0, &b.tree));
-    check(vplBvh_Create(b.geometry, 1 << 30, &b.all));
+    check(vplBvh_Create(b.geometry, 0, false, &b.tree));
+    check(vplBvh_Create(b.geometry, 1 << 30, false, &b.all));
     b.closest = vplGetRayKernels(vplContext_GetIsa(b.context))->closest;
     b.any = vplGetRayKernels(vplContext_GetIsa(b.context))->any;
     const int code = compare(&b, count);

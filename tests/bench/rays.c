@@ -187,7 +187,7 @@ static void measureBuild(const char* path, int workers, int runs)
 #endif
     for (int run = 0; run < runs; run++) {
         double start = now();
-        check(vplBvh_Create(b.geometry, 0, &b.tree));
+        check(vplBvh_Create(b.geometry, 0, false, &b.tree));
         ms[0][run] = now() - start;
         vplBvh_Destroy(b.tree);
 #ifdef HAVE_EMBREE
@@ -236,8 +236,8 @@ int main(int argc, char** argv)
     const char* path = argc > 1 ? argv[1] : "examples/scenes/room.json";
     openScene(path, 0, isa, &b.context, &b.scene);
     check(vplGeometry_Create(b.scene, &b.geometry));
-    check(vplBvh_Create(b.geometry, 0, &b.tree));
-    check(vplBvh_Create(b.geometry, 1 << 30, &b.all));
+    check(vplBvh_Create(b.geometry, 0, false, &b.tree));
+    check(vplBvh_Create(b.geometry, 1 << 30, false, &b.all));
     printf("%s, %s: %d triangles, %d nodes, %d blocks\n", path, vplIsa_GetName(vplContext_GetIsa(b.context)),
            b.geometry->triangleCount, b.tree->nodeCount, b.tree->blockCount);
     b.rays = malloc(MOST_RAYS * sizeof *b.rays);

@@ -84,7 +84,7 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
         o.particles.count = VERY_FEW;
         TRY(vplRenderer_Plan(r, &o, true));
     }
-    if (!patches && o.lights.emitterSamples > 1 && !vplIsInTime(r, 1)) {
+    if (!patches && o.lights.emitterSamples > 1 && !vplIsInTime(r, VPL_SURE_SHARE)) {
         o.lights.emitterSamples = 1; // 1280x720, 200 ms, 1,000 lamps: 0.2 s instead of 0.5
         return vplRenderer_Plan(r, &o, true);
     }

@@ -1,7 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The world-space scene, and how near its surfaces are to each other.
+#include "geometry/bvh.h"
+#include "render/plan.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
+
+// A tree that would take more than this share of the time is built quickly.
+static const double SHARE_OF_TREE = 0.25;
+
+static vplResult buildTree(const vplRun* run, vplGeometry* g)
+{
+    const double budget = run->plan->options.stop.budgetMs,
+                 ms = vplTimeOfTree(run->context, g->triangleCount);
+    return vplGeometry_BuildTree(g, budget > 0 && ms > SHARE_OF_TREE * budget);
+}
 
 vplResult vplMakeGeometry(const vplRun* run, void** resultOut)
 {
@@ -9,10 +21,14 @@ vplResult vplMakeGeometry(const vplRun* run, void** resultOut)
     if (geometry != NULL && vplGeometry_CanUpdate(geometry, run->scene)) {
         *resultOut = geometry;
         TRY(vplGeometry_Update(geometry, run->scene));
-        return run->plan->castsRays ? vplGeometry_BuildRayTree(geometry) : VPL_SUCCESS;
+        return run->plan->castsRays ? buildTree(run, geometry) : VPL_SUCCESS;
     }
-    TRY(run->plan->castsRays ? vplGeometry_Create(run->scene, &geometry)
-                             : vplGeometry_CreateForRaster(run->scene, &geometry));
+    TRY(vplGeometry_CreateForRaster(run->scene, &geometry));
+    const vplResult result = run->plan->castsRays ? buildTree(run, geometry) : VPL_SUCCESS;
+    if (result != VPL_SUCCESS) {
+        vplGeometry_Destroy(geometry);
+        return result;
+    }
     *resultOut = geometry;
     return VPL_SUCCESS;
 }
