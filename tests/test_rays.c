@@ -129,23 +129,27 @@ TEST(TreeAgreesWithAllTriangles, 1)
         vplScene* scene = sceneOf(context, 0.5f);
         addShape(scene, &soup, false, NULL);
         vplGeometry* g = buildGeometry(scene);
-        vplBvh *tree, *all;
+        vplBvh *tree, *quick, *all;
         assert_int_equal(vplBvh_Create(g, 0, false, &tree), VPL_SUCCESS);
+        assert_int_equal(vplBvh_Create(g, 0, true, &quick), VPL_SUCCESS);
         assert_int_equal(vplBvh_Create(g, INT_MAX, false, &all), VPL_SUCCESS);
         assert_true(tree->nodeCount > 1 && all->nodes == NULL && all->blockCount >= 25);
+        assert_true(quick->nodeCount > 1 && memcmp(quick->blocks, tree->blocks, sizeof *tree->blocks) != 0);
         const float extent = vplGeometry_Diagonal(g);
-        int hits = 0;
+        int hits = 0, quickHits = 0;
         enum { RAYS = 800 };
         for (int i = 0; i < RAYS; i++) {
             const vplRay ray = makeRay(i, &soup, extent, &dice);
             for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
                 if (vplHasIsa((vplIsa)isa)) {
                     sums[isa] = compareOne(tree, all, &ray, (vplIsa)isa, sums[isa], &hits);
+                    compareOne(quick, all, &ray, (vplIsa)isa, 0, &quickHits);
                 }
             }
         }
-        assert_true(hits > RAYS / 4);
+        assert_true(hits > RAYS / 4 && quickHits == hits);
         vplBvh_Destroy(tree);
+        vplBvh_Destroy(quick);
         vplBvh_Destroy(all);
         vplGeometry_Destroy(g);
         freeShape(&soup);

@@ -60,7 +60,7 @@ typedef struct vplBvh {
 
 // Builds the tree over all triangles of positive area, with all workers: the same tree for any number of
 // them. Up to `bruteBlocks` blocks (usually VPL_BRUTE_BLOCKS) it has no nodes. A quick tree is built in 0.4 of the time,
-// from groups of triangles; rays have the same hits and take up to 1.2 times as long, packets up to 1.7 times.
+// from groups of triangles; rays have the same hits and take 0.85 to 1.6 times as long (bench/rays).
 vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, bool quick, vplBvh** bvhOut);
 void vplBvh_Destroy(vplBvh* bvh);
 

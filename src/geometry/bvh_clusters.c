@@ -4,8 +4,6 @@
 #include "geometry/bvh_build.h"
 #include "geometry/triangle.h"
 
-#include <string.h>
-
 enum {
     AXIS_BITS = 10,         // of a code, per axis
     DIGIT_BITS = AXIS_BITS, // sorted in one pass

@@ -2,8 +2,8 @@
 // Measures ray throughput: bench/rays SCENE [--runs N] [--isa NAME] [--all] [--only KIND]
 // The program prints millions of rays per second of processor time on one thread, medians of alternated runs,
 // and the share of Intel Embree's rate (robust scene, built at high quality) if Embree was found at build
-// time. The last line compares the time to build the BVH with Embree's at medium quality, on one thread and
-// on all.
+// time. The quick tree is the one for renders with little time. The last lines compare the time to build both with Embree's at medium quality, on
+// one thread and on all.
 // --all: also traces without a BVH. --only: traces only the rays of this number in the table, and skips the
 // build times.
 #include "bench.h"
@@ -24,7 +24,7 @@ typedef struct Bench {
     vplContext* context;
     vplScene* scene;
     vplGeometry* geometry;
-    vplBvh *tree, *all;
+    vplBvh *tree, *quick, *all;
     vplRay* rays;
     int rayCount;
 } Bench;
@@ -139,15 +139,15 @@ static void measure(Bench* b, int runs, bool brute, int only)
     RTCScene embree = makeEmbree(device, b->geometry, RTC_BUILD_QUALITY_HIGH);
     rtcCommitScene(embree);
 #endif
-    printf("%-20s %10s %10s %10s   %s\n", "rays", "tree M/s", "all M/s", "Embree M/s",
-           "tree / Embree (hits)");
+    printf("%-20s %10s %10s %10s %10s   %s\n", "rays", "tree M/s", "quick M/s", "all M/s", "Embree M/s",
+           "quick / tree, tree / Embree (hits)");
     for (Kind kind = 0; kind < KIND_COUNT; kind++) {
         if (only >= 0 && (int)kind != only) {
             continue;
         }
         makeRays(b, kind);
-        double speed[3][MOST_RUNS] = {{0}};
-        int hits[3] = {0};
+        double speed[4][MOST_RUNS] = {{0}};
+        int hits[4] = {0};
         const int few = brute ? b->rayCount / (1 + b->all->blockCount / 64) : 0;
         for (int run = 0; run < runs; run++) {
             double start = cpuMs();
@@ -156,6 +156,9 @@ static void measure(Bench* b, int runs, bool brute, int only)
             start = cpuMs();
             hits[1] = traceAll(b, b->all, kind, few);
             speed[1][run] = few / (cpuMs() - start) / 1e3;
+            start = cpuMs();
+            hits[3] = traceAll(b, b->quick, kind, b->rayCount);
+            speed[3][run] = b->rayCount / (cpuMs() - start) / 1e3;
 #ifdef HAVE_EMBREE
             start = cpuMs();
             hits[2] = traceEmbree(embree, b->rays, b->rayCount, wayOf(kind));
@@ -163,8 +166,10 @@ static void measure(Bench* b, int runs, bool brute, int only)
 #endif
         }
         double tree = medianOf(speed[0], runs), peer = medianOf(speed[2], runs);
-        printf("%-20s %10.2f %10.2f %10.2f   %.2f (%d, %d)\n", KINDS[kind], tree, medianOf(speed[1], runs),
-               peer, peer > 0 ? tree / peer : 0, hits[0], hits[2]);
+        double quick = medianOf(speed[3], runs);
+        printf("%-20s %10.2f %10.2f %10.2f %10.2f   %.2f, %.2f (%d, %d, %d)\n", KINDS[kind], tree, quick,
+               medianOf(speed[1], runs), peer, quick / tree, peer > 0 ? tree / peer : 0, hits[0], hits[3],
+               hits[2]);
     }
 #ifdef HAVE_EMBREE
     rtcReleaseScene(embree);
@@ -179,7 +184,7 @@ static void measureBuild(const char* path, int workers, int runs)
     double (*const now)(void) = workers == 1 ? cpuMs : wallMs;
     openScene(path, workers, VPL_ISA_AUTO, &b.context, &b.scene);
     check(vplGeometry_Create(b.scene, &b.geometry));
-    double ms[2][MOST_RUNS] = {{0}};
+    double ms[3][MOST_RUNS] = {{0}};
 #ifdef HAVE_EMBREE
     char config[64];
     snprintf(config, sizeof config, "threads=%d", vplContext_GetWorkerCount(b.context));
@@ -190,6 +195,10 @@ static void measureBuild(const char* path, int workers, int runs)
         check(vplBvh_Create(b.geometry, 0, false, &b.tree));
         ms[0][run] = now() - start;
         vplBvh_Destroy(b.tree);
+        start = now();
+        check(vplBvh_Create(b.geometry, 0, true, &b.quick));
+        ms[2][run] = now() - start;
+        vplBvh_Destroy(b.quick);
 #ifdef HAVE_EMBREE
         RTCScene embree = makeEmbree(device, b.geometry, RTC_BUILD_QUALITY_MEDIUM);
         start = now();
@@ -202,8 +211,8 @@ static void measureBuild(const char* path, int workers, int runs)
     rtcReleaseDevice(device);
 #endif
     double tree = medianOf(ms[0], runs), peer = medianOf(ms[1], runs);
-    printf("build, %d threads: tree %.2f ms, Embree %.2f ms, %.2f of its speed\n",
-           vplContext_GetWorkerCount(b.context), tree, peer, peer / tree);
+    printf("build, %d threads: tree %.2f ms, quick %.2f ms, Embree %.2f ms, %.2f of its speed\n",
+           vplContext_GetWorkerCount(b.context), tree, medianOf(ms[2], runs), peer, peer / tree);
     vplGeometry_Destroy(b.geometry);
     vplScene_Destroy(b.scene);
     vplContext_Destroy(b.context);
@@ -237,6 +246,7 @@ int main(int argc, char** argv)
     openScene(path, 0, isa, &b.context, &b.scene);
     check(vplGeometry_Create(b.scene, &b.geometry));
     check(vplBvh_Create(b.geometry, 0, false, &b.tree));
+    check(vplBvh_Create(b.geometry, 0, true, &b.quick));
     check(vplBvh_Create(b.geometry, 1 << 30, false, &b.all));
     printf("%s, %s: %d triangles, %d nodes, %d blocks\n", path, vplIsa_GetName(vplContext_GetIsa(b.context)),
            b.geometry->triangleCount, b.tree->nodeCount, b.tree->blockCount);
@@ -244,6 +254,7 @@ int main(int argc, char** argv)
     measure(&b, runs, brute, only);
     free(b.rays);
     vplBvh_Destroy(b.tree);
+    vplBvh_Destroy(b.quick);
     vplBvh_Destroy(b.all);
     vplGeometry_Destroy(b.geometry);
     vplScene_Destroy(b.scene);

@@ -6,7 +6,7 @@
 #include "render/stages/results.h"
 
 // A tree that would take more than this share of the time is built quickly.
-static const double SHARE_OF_TREE = 0.25;
+static const double SHARE_OF_TREE = 0.3;
 
 static vplResult buildTree(const vplRun* run, vplGeometry* g)
 {
