@@ -5,6 +5,7 @@
 #include "math/sampling.h"
 #include "math/vec.h"
 #include "render/plan.h"
+#include "render/probe.h"
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 #include "render/stages/results.h"
@@ -15,67 +16,15 @@
 
 enum { BUILD, TRIANGLE, TEXEL, PIXEL, LIGHT, SHADOW_RAY, PATH_RAY, FORM_FACTOR };
 
-// A few rays into the picture, and one from each surface that they hit.
-typedef struct Probe {
-    double seen;     // share of the picture where a surface is
-    double enclosed; // share of the directions from surfaces in which there is something
-    double
-        facing; // share of pairs of a surface that is seen and one that light may come from, that face each other
-} Probe;
-
 typedef struct Scale {
     const vplPlan* plan;
-    Probe probe;
+    const vplGeometry* geometry;
+    vplProbe probe;
     bool lamps; // a triangle may emit
     double triangles, area, pixels, lights, sides, emitters, reflectance;
     double depth, pathDepth; // a shadow ray's time and a path's, in units of that in a scene of few triangles
     double overlap;          // a texel's time, likewise
 } Scale;
-
-// ---- the scene in numbers
-
-enum { COLUMNS = 12, ROWS = 8, POINTS = COLUMNS * ROWS, SOURCES = 16 };
-
-static vplVec3 towards(const vplView* v, int i)
-{
-    const double x = 2 * (i % COLUMNS + 0.5) / COLUMNS - 1, y = 1 - 2 * (i / COLUMNS + 0.5) / ROWS;
-    const float sx = (float)(x / (double)v->scaleX), sy = (float)(y / (double)v->scaleY);
-    return vplAdd(v->forward, vplAdd(vplScale(sx, v->right), vplScale(sy, v->up)));
-}
-
-// Turns the normal of a hit to where the ray came from.
-static bool hitAt(const vplGeometry* g, vplRay ray, vplHit* hit)
-{
-    const bool found = vplGeometry_ClosestHit(g, &ray, hit);
-    if (found && vplDot(hit->normal, ray.direction) > 0) {
-        hit->normal = vplNegate(hit->normal);
-    }
-    return found;
-}
-
-static Probe probe(const vplGeometry* g, const vplView* view, float near)
-{
-    vplHit seen[POINTS], far[POINTS];
-    int count = 0, farCount = 0, facing = 0, pairs = 0;
-    for (int i = 0; i < POINTS; i++) {
-        if (hitAt(g, (vplRay){vplAdd(view->eye, vplScale(near, towards(view, i))), towards(view, i), {0, 0}},
-                  &seen[count])) {
-            const vplHit* hit = &seen[count++];
-            const float u = ((float)(i % 8) + 0.5f) / 8, v = vplVanDerCorput((uint32_t)i);
-            const vplVec3 direction = vplSampleCosineAround(hit->normal, u, v);
-            farCount += hitAt(g, vplGeometry_Leave(g, hit, direction), &far[farCount]);
-        }
-    }
-    for (int i = 0; i < count; i++) {
-        for (int k = i % 5; k < farCount; k += 5) {
-            const vplVec3 way = vplSub(far[k].position, seen[i].position);
-            facing += vplDot(way, seen[i].normal) > 0 && vplDot(way, far[k].normal) < 0;
-            pairs++;
-        }
-    }
-    return (Probe){(double)count / POINTS, count > 0 ? (double)farCount / count : 0,
-                   pairs > 0 ? (double)facing / pairs : 0};
-}
 
 // ---- stages
 
@@ -299,8 +248,9 @@ static vplWork workOf(const Scale* s, vplStageId id)
     case VPL_STAGE_SOLUTION: // about 20 sweeps
         w.counts[FORM_FACTOR] = p->linked ? 2000 * s->sides : 0.55 * pairs;
         break;
-    case VPL_STAGE_VERTEX_LIGHT: // 64 rays from every tenth vertex or so, which the camera sees
-        w.counts[PATH_RAY] = 8.0 * p->groupedTriangles * s->pathDepth;
+    case VPL_STAGE_VERTEX_LIGHT: // VERTEX_RAYS from all corners of triangles of which the camera sees one
+        w.counts[PATH_RAY] = 64 * 1.5 * vplProbe_SeenVertices(s->geometry, &p->view) * p->groupedTriangles /
+                             s->triangles * s->pathDepth;
         break;
     case VPL_STAGE_GBUFFER:
         w.counts[TRIANGLE] = viewTriangles(s);
@@ -328,6 +278,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     Scale s = {.plan = p,
+               .geometry = g,
                .probe = {1, 0.8, 0.4},
                .triangles = g->triangleCount,
                .pixels = (double)p->options.output.width * p->options.output.height,
@@ -343,7 +294,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
     s.pathDepth = 1 + 0.06 * fmax(doublings, 0);
     s.overlap = 1 + 0.1 * fmax(doublings, 0);
     if (p->castsRays || g->triangleCount < 1000) {
-        s.probe = probe(g, &p->view, (float)p->camera.nearPlane);
+        s.probe = vplProbe_Take(g, &p->view, (float)p->camera.nearPlane);
     }
     for (int i = 0; i < p->stageCount; i++) {
         works[i] = workOf(&s, (vplStageId)p->stages[i].id);

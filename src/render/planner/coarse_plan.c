@@ -184,13 +184,15 @@ static int fitGather(const vplRenderer* r)
 }
 
 // The number of patches that fits into the time beside `drawn` ms for the picture. The time of the exchange of light grows with its square.
+// Groups of triangles take as long to make for fewer patches, so they stay if they are in time.
 static double fitPatches(const vplRenderer* r, double drawn)
 {
-    const double planned = r->plan->options.radiosity.patches;
-    const double rest = fmax(0, SHARE_OF_PATCHES * vplTimeLeft(r) - drawn);
-    const double fits = planned * sqrt(rest / (r->plan->firstMs - drawingMs(r)));
+    const double planned = r->plan->options.radiosity.patches, exchange = vplTimeOfFirst(r) - drawingMs(r);
+    const double left = vplTimeLeft(r), rest = fmax(0, SHARE_OF_PATCHES * left - drawn);
+    const double fits = planned * sqrt(rest / exchange);
     const bool about = fits > FEWER * planned && fits < planned / FEWER;
-    return about ? planned : fmin(fits, vplMostPatches(r->runner.run.context));
+    const bool inTime = r->plan->patchGroups > 0 && exchange + drawn <= VPL_SURE_SHARE * left;
+    return about || (inTime && fits < planned) ? planned : fmin(fits, vplMostPatches(r->runner.run.context));
 }
 
 // Replaces a plan of VPL_FIRST_PATCHES patches by one with as many patches and gather rays as fit into the time, or by virtual lights if

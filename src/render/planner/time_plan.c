@@ -24,8 +24,12 @@ static double timeOfStage(const vplPlan* p, vplStageId id)
 
 double vplTimeOfFirst(const vplRenderer* r)
 {
-    const bool made = r->runner.run.results[VPL_STAGE_GEOMETRY] != NULL;
-    const double ms = r->plan->firstMs - (made ? timeOfStage(r->plan, VPL_STAGE_GEOMETRY) : 0);
+    static const vplStageId FIRST[] = {VPL_STAGE_GEOMETRY, VPL_STAGE_PATCHES, VPL_STAGE_SIDES};
+    double ms = r->plan->firstMs;
+    for (size_t i = 0; i < sizeof FIRST / sizeof *FIRST; i++) {
+        const bool made = r->runner.run.results[FIRST[i]] != NULL;
+        ms -= made ? timeOfStage(r->plan, FIRST[i]) : 0;
+    }
     return r->plan->showsVirtual ? ms * r->pace : ms;
 }
 

@@ -5,7 +5,7 @@
 
 #include "render/renderer.h"
 
-// The time in ms that a plan, none of whose passes has begun, is foreseen to need for its first picture. The geometry does not count if
+// The time in ms that a plan, none of whose passes has begun, is foreseen to need for its first picture. Geometry, patches and their sides do not count if
 // planning has made it; times of virtual lights are multiplied by the pace of the renderer.
 double vplTimeOfFirst(const vplRenderer* renderer);
 
