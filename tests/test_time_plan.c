@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "reference/sparse_paths.h"
+#include "render/planner/patch_plan.h"
 #include "render/planner/time_plan.h"
 
 static vplRenderOptions optionsFor(double budgetMs)
@@ -156,6 +157,21 @@ TEST(TheTimeOfAPlanIsWithoutWhatIsDone, 2)
     r->pace = 3;
     assert_true(fabs(vplTimeOfFirst(r) - 3 * (r->plan->firstMs - geometry)) < 1e-8 * r->plan->firstMs);
     vplRenderer_Destroy(r);
+    // Patches and their sides are made while a plan of radiosity is.
+    vplRenderOptions patches = o;
+    patches.method = VPL_METHOD_RADIOSITY;
+    patches.stop.budgetMs = 0;
+    assert_int_equal(vplRenderer_Create(scene, &patches, &r), VPL_SUCCESS);
+    double made = 0;
+    for (int i = 0; i < r->plan->stageCount; i++) {
+        const char* name = r->plan->stages[i].name;
+        const bool is = strcmp(name, "geometry") == 0 || strcmp(name, "patches") == 0 ||
+                        strcmp(name, "reachable sides") == 0;
+        made += is ? r->plan->stages[i].ms : 0;
+    }
+    assert_true(made > geometry);
+    assert_true(fabs(vplTimeOfFirst(r) - (r->plan->firstMs - made)) < 1e-9 * r->plan->firstMs);
+    vplRenderer_Destroy(r);
     vplScene_Destroy(scene);
 }
 
@@ -200,6 +216,15 @@ TEST(PatchesFillTheTimeWhereTheySuit, 2)
     assert_int_equal(methodInTime(context, "examples/scenes/closed-room.json", &o), VPL_METHOD_KELLER);
 }
 
+// 5,120 triangles, which are grouped into patches.
+static void addSphere(vplScene* scene)
+{
+    Shape shape = icosphere(4);
+    placeShape(&shape, 0.1f, (double[3]){0, 0, 0}, (vplVec3){1.5f, 0.5f, 2});
+    addShape(scene, &shape, false, NULL);
+    freeShape(&shape);
+}
+
 // Where doors hide the lights, patches have no gather if its rays would come too late, unless triangles are grouped into patches.
 TEST(PatchesGoWithoutAGatherInAShortTime, 2)
 {
@@ -215,16 +240,15 @@ TEST(PatchesGoWithoutAGatherInAShortTime, 2)
                 {9e5, 160, false, VPL_METHOD_RADIOSITY, 0}, // foreseen to be a little late
                 {2e5, 160, false, VPL_METHOD_KELLER, -1},
                 {6e6, 320, true, VPL_METHOD_RADIOSITY, 6},
-                {3e6, 320, true, VPL_METHOD_KELLER, -1}};
+                {3e6, 320, true, VPL_METHOD_KELLER, -1},
+                {3e6, 160, true, VPL_METHOD_RADIOSITY,
+                 11}};                          // making 672 patches anew would take longer than 1,000 save
     const vplSpeeds slow = slowerSpeeds(10000); // so that the time that this test itself takes does not count
     assert_int_equal(vplContext_SetSpeeds(context, &slow), VPL_SUCCESS);
     vplScene* scene = openScene(context, "examples/scenes/flat.json");
     for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
         if (ROWS[i].grouped && !ROWS[i - 1].grouped) {
-            Shape shape = icosphere(4); // 5,120 triangles
-            placeShape(&shape, 0.1f, (double[3]){0, 0, 0}, (vplVec3){1.5f, 0.5f, 2});
-            addShape(scene, &shape, false, NULL);
-            freeShape(&shape);
+            addSphere(scene);
         }
         vplRenderOptions o = optionsFor(ROWS[i].ms);
         o.output.width = ROWS[i].width;
@@ -238,11 +262,36 @@ TEST(PatchesGoWithoutAGatherInAShortTime, 2)
         }
         assert_int_equal(r->plan->options.method, ROWS[i].method);
         assert_int_equal(r->plan->options.radiosity.gather, ROWS[i].gather);
-        assert_true(ROWS[i].method != VPL_METHOD_RADIOSITY || ROWS[i].grouped == (r->plan->patchGroups > 0));
+        if (ROWS[i].method == VPL_METHOD_RADIOSITY) {
+            assert_true(ROWS[i].grouped == (r->plan->patchGroups > 0));
+            assert_true(!ROWS[i].grouped || r->plan->options.radiosity.patches == VPL_FIRST_PATCHES);
+        }
         vplRenderer_Destroy(r);
     }
     vplScene_Destroy(scene);
     assert_int_equal(vplContext_SetSpeeds(context, NULL), VPL_SUCCESS);
+}
+
+// Groups of triangles take long to make, so they must be foreseen to take at most 0.8 of the time; other patches may take all of it.
+TEST(GroupsAreMadeOnlyWhereThereIsTime, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    const vplRenderOptions o = optionsFor(1e7);
+    const double pixels = 64.0 * 36, lamps = vplScene_GetEmitterCount(scene);
+    for (int grouped = 0; grouped < 2; grouped++) {
+        vplRenderer* r;
+        int gather;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        const vplGeometry* g = r->runner.run.results[VPL_STAGE_GEOMETRY];
+        const double exchange = 1.2e6 + 60.0 * g->triangleCount, picture = 2 * pixels * lamps;
+        const double needs = exchange + picture + (grouped ? 1.6 * 4 * pixels : 0);
+        const double least = grouped ? needs / 0.8 : needs;
+        assert_true(vplPatchesSuitTime(&r->runner, r->plan, &o, 1.001 * least, &gather));
+        assert_false(vplPatchesSuitTime(&r->runner, r->plan, &o, 0.999 * least, &gather));
+        vplRenderer_Destroy(r);
+        addSphere(scene);
+    }
+    vplScene_Destroy(scene);
 }
 
 // Patches, and rays that gather their light, are as many as the caller asks for, however much time is left.
