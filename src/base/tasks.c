@@ -123,7 +123,7 @@ vplResult vplParallelForAsking(vplContext* context, int count, vplTaskFcn* task,
 
 vplResult vplClear(vplContext* context, void* memory, size_t bytes)
 {
-    enum { PIECE = 8 << 20 }; // about 5 ms
+    enum { PIECE = 2 << 20 }; // 0.5 ms; 5 to 15 where a virtual machine's host finds the memory first
     for (size_t at = 0; at < bytes; at += PIECE) {
         memset((char*)memory + at, 0, bytes - at < PIECE ? bytes - at : PIECE);
         if (vplAsk(context) != VPL_SUCCESS) {

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "reference/path_trace.h"
+#include "render/options.h"
 #include "render/replay.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -41,8 +42,8 @@ static vplStateHeader describe(const vplRenderer* r, const vplByteBuffer* text)
     vplStateHeader h = {.version = VPL_STATE_VERSION,
                         .textBytes = (uint32_t)text->size,
                         .scene = vplRenderer_HashScene(r),
-                        .width = (uint32_t)o->width,
-                        .height = (uint32_t)o->height,
+                        .width = (uint32_t)vplRenderedWidth(o),
+                        .height = (uint32_t)vplRenderedHeight(o),
                         .parts = parts,
                         .passes = (uint32_t)r->done,
                         .truth = r->truth != NULL && r->asked.stop.maxError > 0

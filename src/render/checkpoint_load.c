@@ -2,6 +2,7 @@
 // Resumes a saved render. Every size and value of the file is checked.
 #include "base/file.h"
 #include "reference/path_trace.h"
+#include "render/options.h"
 #include "render/replay.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -128,8 +129,9 @@ static vplResult checkRender(const Loading* l)
         h->side <= VPL_MAX_INTERLEAVE && h->tries <= VPL_MAX_SAMPLES && h->edges[0] <= VPL_MAX_EDGE_PIXELS &&
         h->edges[1] <= VPL_MAX_SAMPLES && (h->edges[0] == 0 || (h->passes > 0 && h->edges[1] > 0)) &&
         ((h->parts & VPL_STATE_PATHS) == 0 || (h->samples >= 1 && h->samples <= VPL_MAX_SAMPLES));
-    const bool fits = h->width == (uint32_t)r->plan->options.output.width &&
-                      h->height == (uint32_t)r->plan->options.output.height && vplState_Size(h) == l->size;
+    const vplOutputOptions* size = &r->plan->options.output;
+    const bool fits = h->width == (uint32_t)vplRenderedWidth(size) &&
+                      h->height == (uint32_t)vplRenderedHeight(size) && vplState_Size(h) == l->size;
     return counts && fits
                ? VPL_SUCCESS
                : vplFail(context, VPL_PARSE_ERROR, "%s: its counts contradict each other", l->path);
@@ -157,7 +159,7 @@ static vplResult replan(Loading* l)
             vplRenderOptions_Set(&o, line, line + named + 1);
         }
     }
-    return vplRenderer_Plan(r, &o, false);
+    return vplRenderer_Plan(r, &o, o.output.pixelSize > r->asked.output.pixelSize);
 }
 
 // Makes what the arrays are read into, or draws again what is drawn at once.
@@ -176,9 +178,9 @@ static vplResult openState(vplRenderer* r, uint32_t parts)
     vplImage_Destroy(r->base);
     vplImage_Destroy(r->direct);
     r->base = r->direct = NULL;
-    TRY(vplImage_Create(context, o->width, o->height, &r->base));
-    TRY((parts & VPL_STATE_DIRECT) != 0 ? vplImage_Create(context, o->width, o->height, &r->direct)
-                                        : VPL_SUCCESS);
+    const int width = vplRenderedWidth(o), height = vplRenderedHeight(o);
+    TRY(vplImage_Create(context, width, height, &r->base));
+    TRY((parts & VPL_STATE_DIRECT) != 0 ? vplImage_Create(context, width, height, &r->direct) : VPL_SUCCESS);
     return vplRenderer_OpenSums(r);
 }
 

@@ -4,6 +4,7 @@
 #include "geometry/bvh.h"
 #include "math/sampling.h"
 #include "math/vec.h"
+#include "render/options.h"
 #include "render/plan.h"
 #include "render/probe.h"
 #include "render/stages/make.h"
@@ -281,7 +282,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
                .geometry = g,
                .probe = {1, 0.8, 0.4},
                .triangles = g->triangleCount,
-               .pixels = (double)p->options.output.width * p->options.output.height,
+               .pixels = vplCountPixels(&p->options.output),
                .lights = drawnLights(p),
                .lamps = g->emits,
                .area = vplGeometry_Area(g),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Decisions that need the scene's geometry: the clamp, the lights and bounces, what passes share, and light shadows.
+#include "render/options.h"
 #include "render/plan.h"
 
 #include "render/show.h"
@@ -63,7 +64,7 @@ static void decideClamp(const vplRunner* r, vplPlan* p)
 double vplTrianglesPerPixel(const vplRunner* r, const vplRenderOptions* o)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    return g->triangleCount / ((double)o->output.width * o->output.height);
+    return g->triangleCount / vplCountPixels(&o->output);
 }
 
 // Above this number of triangles per pixel, all passes share one G-buffer. Below it, rasterization takes about a twentieth of a pass or

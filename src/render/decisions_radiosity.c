@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Decisions of radiosity: where patches end, groups of triangles, links, and whether pixels gather their light.
+#include "render/options.h"
 #include "render/plan.h"
 
 #include "geometry/triangle.h"
@@ -161,7 +162,7 @@ enum { GROUP_RAYS = 16, MOST_GROUP_RAYS = 128, GROUP_RAYS_PER_SIDE = 500, GROUP_
 // Returns the number of rays for the size of the picture.
 static int groupRays(const vplPlan* p)
 {
-    const double pixels = (double)p->options.output.width * p->options.output.height,
+    const double pixels = vplCountPixels(&p->options.output),
                  most = (double)GROUP_RAYS_PER_SIDE * p->patchSides / pixels;
     int rays = GROUP_RAYS;
     while (rays < MOST_GROUP_RAYS && 2 * rays <= most) {

@@ -2,6 +2,7 @@
 // Counts and bytes of a plan. A stage that ran while decisions were made is known exactly; for the others
 // sizes follow from what they allocate. tests/test_plan.c compares the sum with what rendering holds.
 #include "radiosity/links/links.h"
+#include "render/options.h"
 #include "render/estimate_bytes.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -95,7 +96,7 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
                       .triangles = g->triangleCount,
                       .objects = g->objectCount,
                       .smooth = g->shadingNormals != NULL,
-                      .pixels = (double)p->options.output.width * p->options.output.height,
+                      .pixels = vplCountPixels(&p->options.output),
                       .lights = (double)p->virtualLights,
                       .drawn = (double)drawnLights(r, p),
                       .sides = p->patchSides};
@@ -128,7 +129,7 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
     live += (int64_t)(more.held + more.scratch) + remade;
     p->peakBytes = live > p->peakBytes ? live : p->peakBytes;
     p->layerBytes = (int64_t)(12 * s.pixels) * __builtin_popcount((unsigned)p->options.output.aovs);
-    p->pictureBytes = (int64_t)(12 * s.pixels);
+    p->pictureBytes = 12 * (int64_t)p->options.output.width * p->options.output.height;
     countDraws(&s, p);
     return VPL_SUCCESS;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "render/options.h"
 #include "render/estimate_bytes.h"
 
 #include "render/stages/make.h"
@@ -118,7 +119,8 @@ static double pipelineScratch(const vplPlanScale* s)
 
 static double countTiles(const vplRenderOptions* o)
 {
-    return ceil(o->output.width / (double)VPL_TILE_SIDE) * ceil(o->output.height / (double)VPL_TILE_SIDE);
+    return ceil(vplRenderedWidth(&o->output) / (double)VPL_TILE_SIDE) *
+           ceil(vplRenderedHeight(&o->output) / (double)VPL_TILE_SIDE);
 }
 
 // Memory of smooth edges: each worker holds the samples of a tile; interleaved shading a share per pixel and

@@ -97,12 +97,27 @@ vplAccumulation vplUsualPipeline(const vplRenderOptions* o)
                                                              : VPL_ACCUMULATE_DEFERRED;
 }
 
+int vplRenderedWidth(const vplOutputOptions* o)
+{
+    return (o->width + o->pixelSize - 1) / o->pixelSize;
+}
+
+int vplRenderedHeight(const vplOutputOptions* o)
+{
+    return (o->height + o->pixelSize - 1) / o->pixelSize;
+}
+
+double vplCountPixels(const vplOutputOptions* o)
+{
+    return (double)vplRenderedWidth(o) * vplRenderedHeight(o);
+}
+
 // Each pixel keeps eight lights or more.
 // With 4000 particles a side of 16 takes a third of the time of 8 (room, 1280x720), but blurs light near
 // corners in small pictures (256x256: error 2.9 % instead of 2.3 %).
 int vplUsualSquare(const vplRenderOptions* o)
 {
-    const bool large = (int64_t)o->output.width * o->output.height >= 300000;
+    const bool large = vplCountPixels(&o->output) >= 300000;
     if (o->method != VPL_METHOD_KELLER || o->particles.count < 500) {
         return 4;
     }

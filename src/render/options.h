@@ -8,6 +8,11 @@
 // The value of a number or choice; 0 for a seed.
 double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* options);
 
+// The size in which the picture is rendered, before it is enlarged by --pixel-size; and the number of its pixels.
+int vplRenderedWidth(const vplOutputOptions* options);
+int vplRenderedHeight(const vplOutputOptions* options);
+double vplCountPixels(const vplOutputOptions* options);
+
 // The pipeline that "usual" stands for.
 vplAccumulation vplUsualPipeline(const vplRenderOptions* options);
 

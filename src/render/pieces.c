@@ -28,6 +28,8 @@ static const char* findObstacle(const vplRenderer* r)
                    vplPathsAreOpen(p) || (p->progressive && o->stop.passes <= 0)
                ? "a time or an error ends this picture, so its pieces are not known before; a number of them "
                  "has --passes N without --budget, --max-error and --quality, and by --method path --spp N"
+           : o->output.pixelSize > 1
+               ? "a piece has whole rows of the picture: --pixel-size must be 1 for a picture in pieces"
            : o->path.edgePixels > 0 ? "pixels at edges are chosen from the whole picture: --edge-pixels must "
                                       "be 0 for a picture in pieces"
            : o->sequence.coherence == VPL_COHERENCE_ON && o->sequence.history != NULL

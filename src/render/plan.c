@@ -74,6 +74,9 @@ static const char* refuseOptions(const vplPlan* p)
                "--show, no --aov and no "
                "--lighting documented";
     }
+    if (o->output.pixelSize > 1 && (o->path.edgePixels > 0 || o->output.aovs != 0)) {
+        return "edge-pixels and aov need a value of each pixel: use --pixel-size 1";
+    }
     const bool map = p->emitterCount > 0 && p->emitters[0].type != VPL_EMITTER_DIRECTIONAL &&
                      !p->emitterRays && o->method != VPL_METHOD_SSVP;
     if ((show == VPL_SHOW_SHADOW_MAP || show == VPL_SHOW_SHADOW_FACTOR) && !map) {
@@ -212,6 +215,8 @@ static vplResult pose(const vplScene* scene, vplPlan* p)
         TRY(vplScene_PoseCamera(scene, o->output.camera, o->sequence.frame, &p->camera));
     }
     p->view = vplView_Create(&p->camera, o->output.width, o->output.height);
+    p->view.width = vplRenderedWidth(&o->output); // with the same directions at its borders
+    p->view.height = vplRenderedHeight(&o->output);
     p->emitterCount = vplScene_GetEmitterCount(scene);
     vplEmitterDef* emitters = vplArena_Alloc(p->arena, (size_t)p->emitterCount, sizeof *emitters);
     TRY(vplArena_Check(p->arena));

@@ -133,10 +133,22 @@ static bool watch(void* user, double fraction)
     return r->asked.progress == NULL || r->asked.progress(r->asked.progressUser, fraction);
 }
 
+// The time that it takes to hand over the picture of a render that has a time: to copy it, its mean and its hash. Mostly the system's clearing of memory.
+static double finishingMs(const vplRenderOptions* o)
+{
+    const double ms = 2e-5 * o->output.width * o->output.height;
+    return fmin(ms, 0.2 * o->stop.budgetMs);
+}
+
 static vplResult create(const vplScene* scene, const vplRenderOptions* options, vplRenderer** rendererOut)
 {
     vplContext* context = vplScene_GetContext(scene);
     const double start = vplClockMs(), cpuStart = vplCpuMs();
+    if (options->output.pixelSize > 1 && (options->stop.budgetMs > 0 || options->stop.maxError > 0 ||
+                                          options->stop.quality != VPL_QUALITY_NONE)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "pixel-size is chosen by budget, max-error and quality: set it without them");
+    }
     vplHistory* history;
     TRY(vplHistory_Open(scene, options->sequence.history, &history));
     vplRenderer* r = vplAllocZero(context, 1, sizeof *r);
@@ -156,7 +168,8 @@ static vplResult create(const vplScene* scene, const vplRenderOptions* options, 
     r->cpuStart = cpuStart;
     r->spreadBefore = INFINITY;
     r->pace = 1;
-    r->deadline = r->asked.stop.budgetMs > 0 ? start + r->asked.stop.budgetMs : INFINITY;
+    r->deadline =
+        r->asked.stop.budgetMs > 0 ? start + r->asked.stop.budgetMs - finishingMs(&r->asked) : INFINITY;
     r->runner = vplRunner_Begin(scene, history);
     r->runner.progress = isfinite(r->deadline) || options->progress != NULL ? watch : NULL;
     r->runner.progressUser = r;

@@ -34,14 +34,19 @@ static double shareOf(const vplRenderer* r, int passes)
 
 vplResult vplRenderer_OpenSums(vplRenderer* r)
 {
-    for (int i = 0; i < 2; i++) {
-        vplFree(r->runner.run.context, r->sums[i]); // of a first pass that was cancelled
-        r->sums[i] = vplAllocZero(r->runner.run.context, vplValueCount(r->base), sizeof *r->sums[i]);
-        if (r->sums[i] == NULL) {
-            return VPL_OUT_OF_MEMORY;
-        }
+    vplContext* context = r->runner.run.context;
+    const size_t values = vplValueCount(r->base);
+    const vplWatch outer =
+        vplSetWatch(context, r->runner.progress, r->runner.progressUser, r->runner.stepFrom);
+    vplResult result = VPL_SUCCESS;
+    for (int i = 0; i < 2 && result == VPL_SUCCESS; i++) {
+        vplFree(context, r->sums[i]); // of a first pass that was cancelled
+        r->sums[i] = vplAlloc(context, values, sizeof *r->sums[i]);
+        result = r->sums[i] != NULL ? vplClear(context, r->sums[i], values * sizeof *r->sums[i])
+                                    : VPL_OUT_OF_MEMORY;
     }
-    return VPL_SUCCESS;
+    context->watch = outer;
+    return result;
 }
 
 bool vplPassesSplitLight(const vplPlan* p)

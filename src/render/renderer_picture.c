@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The picture of the passes so far, its layers and its statistics.
 #include "base/clock.h"
+#include "image/enlarge.h"
 #include "render/renderer.h"
 #include "render/show.h"
 #include "render/stages/make.h"
@@ -60,16 +61,11 @@ vplResult vplRenderer_RefreshPatches(vplRenderer* r)
                                                                        : VPL_SUCCESS;
 }
 
-vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
+// The picture of the passes, in the size in which it is rendered.
+static vplResult resolvePasses(vplRenderer* r, vplImage** imageOut)
 {
     vplRun* run = &r->runner.run;
     const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
-    if (r->plan->options.method == VPL_METHOD_PATH) {
-        TRY(vplResolvePaths(run, imageOut));
-        r->error.noise = r->error.total = run->stats->relativeErrorEstimate;
-        r->error.bound = 1.06 * r->error.noise;
-        return VPL_SUCCESS;
-    }
     TRY(r->plan->progressive ? refreshLights(r) : VPL_SUCCESS);
     TRY(vplImage_Create(run->context, r->base->width, r->base->height, imageOut));
     for (size_t k = 0; k < vplValueCount(r->base); k++) {
@@ -83,6 +79,26 @@ vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
         estimateNoise(r, *imageOut);
     }
     return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
+}
+
+vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
+{
+    vplRun* run = &r->runner.run;
+    const vplOutputOptions* o = &r->plan->options.output;
+    if (r->plan->options.method == VPL_METHOD_PATH) {
+        TRY(vplResolvePaths(run, imageOut));
+        r->error.noise = r->error.total = run->stats->relativeErrorEstimate;
+        r->error.bound = 1.06 * r->error.noise;
+        return VPL_SUCCESS;
+    }
+    if (o->pixelSize == 1) {
+        return resolvePasses(r, imageOut);
+    }
+    vplImage* small = NULL;
+    vplResult result = resolvePasses(r, &small);
+    result = result == VPL_SUCCESS ? vplImage_Enlarge(small, o->width, o->height, imageOut) : result;
+    vplImage_Destroy(small);
+    return result;
 }
 
 // Direct light alone of all passes so far; NULL where light is not split.

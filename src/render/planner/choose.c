@@ -79,7 +79,7 @@ static bool isCrowded(const vplRunner* r, const vplRenderOptions* o)
 
 static double countPixels(const vplRenderOptions* o)
 {
-    return (double)o->output.width * o->output.height;
+    return vplCountPixels(&o->output);
 }
 
 // Chooses the number of particles of a pass.

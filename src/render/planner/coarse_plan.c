@@ -24,6 +24,9 @@ enum { COARSE_GATHER = 2 };
 // If there are more than FEW_EMITTERS, a tree chooses COARSE_CHOICES of them for each point of a coarse picture.
 enum { FEW_EMITTERS = 16, COARSE_CHOICES = 4 };
 
+// The largest side of a square of pixels that are rendered as one in a coarse picture.
+enum { MOST_ENLARGED = 8 };
+
 // Fewer lights and patches by a factor, no smooth edges and small shadow maps.
 static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 {
@@ -63,6 +66,34 @@ static bool suitsPatches(const vplRenderer* r, double rays, int* gatherOut)
     return vplHasTimeAlone(r) && vplPatchesSuitTime(&r->runner, r->plan, &r->asked, rays, gatherOut);
 }
 
+// Renders one pixel for 2x2, 4x4 or 8x8, up to `most`, until the coarse picture is foreseen to come in time.
+static vplResult enlargePixels(vplRenderer* r, int most, vplRenderOptions* o)
+{
+    while (o->output.pixelSize < most && !vplIsInTime(r, VPL_SURE_SHARE)) {
+        o->output.pixelSize *= 2;
+        TRY(vplRenderer_Plan(r, o, true));
+    }
+    return VPL_SUCCESS;
+}
+
+// Makes a coarse plan of virtual lights smaller until it is foreseen to come in time. Four choices for one of 2x2 pixels have less noise than one
+// for each pixel.
+static vplResult shrinkCoarse(vplRenderer* r, vplRenderOptions* o)
+{
+    if (o->particles.count > VERY_FEW && !vplIsInTime(r, VPL_SURE_SHARE)) {
+        o->particles.count = VERY_FEW;
+        TRY(vplRenderer_Plan(r, o, true));
+    }
+    if (o->lights.emitterSamples > 1) {
+        TRY(enlargePixels(r, 2, o));
+        if (!vplIsInTime(r, VPL_SURE_SHARE)) {
+            o->lights.emitterSamples = 1;
+            TRY(vplRenderer_Plan(r, o, true));
+        }
+    }
+    return enlargePixels(r, MOST_ENLARGED, o);
+}
+
 vplResult vplRenderer_PlanFirst(vplRenderer* r)
 {
     const vplMethod method = r->asked.method;
@@ -80,15 +111,10 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
     }
     coarsen(r, patches ? 0.02 : 0.0625, &o);
     TRY(vplRenderer_Plan(r, &o, true));
-    if (!patches && o.particles.count > VERY_FEW && !vplIsInTime(r, VPL_SURE_SHARE)) {
-        o.particles.count = VERY_FEW;
-        TRY(vplRenderer_Plan(r, &o, true));
+    if (!patches) {
+        return shrinkCoarse(r, &o);
     }
-    if (!patches && o.lights.emitterSamples > 1 && !vplIsInTime(r, VPL_SURE_SHARE)) {
-        o.lights.emitterSamples = 1; // 1280x720, 200 ms, 1,000 lamps: 0.2 s instead of 0.5
-        return vplRenderer_Plan(r, &o, true);
-    }
-    if (patches && r->plan->patchGroups > 0 && r->asked.radiosity.gather < 0) {
+    if (r->plan->patchGroups > 0 && r->asked.radiosity.gather < 0) {
         o.radiosity.gather = COARSE_GATHER;
         return vplRenderer_Plan(r, &o, true);
     }
@@ -239,8 +265,20 @@ static void notePace(vplRenderer* r)
     }
 }
 
+// Where nothing else fits into the time, the coarse picture follows with smaller pixels, as small as fit. `spent`: ms that it took.
+static vplResult shrinkPixels(vplRenderer* r, const vplRenderOptions* coarse, double spent, bool* doneOut)
+{
+    vplRenderOptions o = *coarse;
+    const double fits = fmax(VPL_SURE_SHARE * vplTimeLeft(r), 0.1);
+    o.output.pixelSize = (int)fmax(1, ceil(coarse->output.pixelSize * sqrt(spent / fits)));
+    *doneOut = o.output.pixelSize >= coarse->output.pixelSize;
+    return *doneOut ? VPL_SUCCESS : vplRenderer_Plan(r, &o, true);
+}
+
 vplResult vplFollowCoarse(vplRenderer* r, bool* doneOut)
 {
+    const vplRenderOptions coarse = r->plan->options;
+    const double spent = vplClockMs() - r->planStart;
     const double rays = vplTimeLeft(r) * (double)r->runner.stats.rays /
                         fmax(1, r->passMs); // at the pace of the coarse picture
     int gather;
@@ -252,5 +290,6 @@ vplResult vplFollowCoarse(vplRenderer* r, bool* doneOut)
     } else {
         TRY(refine(r));
     }
-    return r->coarse ? VPL_SUCCESS : vplFitPlan(r, doneOut);
+    TRY(r->coarse ? VPL_SUCCESS : vplFitPlan(r, doneOut));
+    return *doneOut && coarse.output.pixelSize > 1 ? shrinkPixels(r, &coarse, spent, doneOut) : VPL_SUCCESS;
 }

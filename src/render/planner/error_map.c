@@ -3,6 +3,7 @@
 #include "reference/path_trace.h"
 #include "render/planner/contrast.h"
 #include "render/planner/edges.h"
+#include "render/options.h"
 #include "render/renderer.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -17,6 +18,14 @@ typedef struct Map {
     const double* halves; // of path tracing: sums of each pixel's even and odd paths; NULL: passes have sums
     vplImage* image;
 } Map;
+
+// The pixel that is rendered for a pixel of the picture.
+static size_t renderedPixel(const vplRenderer* r, size_t pixel)
+{
+    const vplOutputOptions* o = &r->plan->options.output;
+    const size_t width = (size_t)o->width, x = pixel % width, y = pixel / width, side = (size_t)o->pixelSize;
+    return y / side * (size_t)vplRenderedWidth(o) + x / side;
+}
 
 // Squared noise of value c of a pixel.
 static double noiseOf(const Map* m, size_t pixel, size_t c)
@@ -34,7 +43,8 @@ static double noiseOf(const Map* m, size_t pixel, size_t c)
     if (r->done < 2 || r->sums[0] == NULL) {
         return 0;
     }
-    const double sum = r->sums[0][3 * pixel + c], squares = r->sums[1][3 * pixel + c];
+    const size_t k = 3 * renderedPixel(r, pixel) + c;
+    const double sum = r->sums[0][k], squares = r->sums[1][k];
     return fmax(0, squares - sum * sum / r->weight) / (r->done - 1) / r->weight;
 }
 

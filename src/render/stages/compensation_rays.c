@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "geometry/triangle.h"
 #include "math/scalar.h"
+#include "render/options.h"
 #include "render/runner.h"
 #include "render/stages/results.h"
 
@@ -98,8 +99,7 @@ enum { POINT_SHARE = 40000, MIN_POINTS = 32, MAX_POINTS = 1024, POINT_RAYS = 4 }
 static int pointsToAsk(const vplPlan* plan, const vplVirtualLights* lights)
 {
     const vplOutputOptions* o = &plan->options.output;
-    const double work =
-        (double)o->width * o->height * o->supersample * workOf(plan, lightsPerPixel(plan, lights));
+    const double work = vplCountPixels(o) * o->supersample * workOf(plan, lightsPerPixel(plan, lights));
     return (int)fmin(fmax(work / POINT_SHARE, MIN_POINTS), MAX_POINTS);
 }
 

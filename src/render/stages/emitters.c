@@ -2,6 +2,7 @@
 // The stages for emitters: shadow maps of points and spots, points on area lights, and reflective shadow
 // maps.
 #include "lights/light_set.h"
+#include "render/options.h"
 #include "render/plan.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -16,7 +17,7 @@ static vplResult boundMap(const vplRun* run, vplCubeMap* map)
 {
     const vplRenderOptions* o = &run->plan->options;
     const double samples = o->shadow.pcfSamples;
-    const double lookups = (double)o->output.width * o->output.height * o->output.supersample * samples;
+    const double lookups = vplCountPixels(&o->output) * o->output.supersample * samples;
     const bool pays = samples >= VPL_MIN_BOUND_SAMPLES && lookups > 3.0 * map->size * map->size;
     return pays ? vplCubeMap_FindBounds(map) : VPL_SUCCESS;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Virtual lights where particles land (Keller; Franchi and Ferrante), placed as the options say.
+#include "render/options.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
@@ -27,7 +28,7 @@ static vplParticleDef describeParticles(const vplRun* run)
 // leave 0.71 of the error of 32). Judging 32 candidates costs as much as shading 8192 pixels.
 static int oversamplingFor(const vplOutputOptions* o)
 {
-    const double times = (double)o->width * o->height * o->supersample / 4096;
+    const double times = vplCountPixels(o) * o->supersample / 4096;
     return times < 32 ? 32 : times > 64 ? 64 : (int)times;
 }
 

@@ -2,6 +2,7 @@
 // The picture: direct light, virtual lights and patches, added up for every sample of every pixel.
 #include "base/clock.h"
 #include "math/sampling.h"
+#include "render/options.h"
 #include "render/plan.h"
 #include "render/show.h"
 #include "render/stages/make.h"
@@ -326,7 +327,7 @@ vplResult vplMakePicture(const vplRun* run, void** resultOut)
         *resultOut = image;
         return VPL_SUCCESS;
     }
-    TRY(vplImage_Create(run->context, o->width, o->height, &image));
+    TRY(vplImage_Create(run->context, vplRenderedWidth(o), vplRenderedHeight(o), &image));
     *resultOut = image;
     Shading shading = {0};
     const vplResult result = shadePicture(run, &shading, image);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "render/options.h"
 #include "render/stages/shadow_choice.h"
 
 #include "math/vec.h"
@@ -93,7 +94,7 @@ vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights*
 {
     const vplRenderOptions* o = &plan->options;
     const int side = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED ? o->pipeline.interleave : 1;
-    const double pixels = (double)o->output.width * o->output.height * o->output.supersample / side / side;
+    const double pixels = vplCountPixels(&o->output) * o->output.supersample / side / side;
     const vplShadowLoad load = vplMeasureShadowLoad(run->results[VPL_STAGE_GEOMETRY], &plan->view, pixels,
                                                     lights->lights, lights->count, o->lights.mapSize);
     const vplShadowCosts costs = vplEstimateShadows(&load);
