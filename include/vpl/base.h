@@ -35,9 +35,9 @@
 VPL_HEADER_BEGIN
 
 #define VPL_VERSION_MAJOR  0
-#define VPL_VERSION_MINOR  11
+#define VPL_VERSION_MINOR  12
 #define VPL_VERSION_PATCH  0
-#define VPL_VERSION_STRING "0.11.0"
+#define VPL_VERSION_STRING "0.12.0"
 
 // Largest width or height of an image, in pixels.
 #define VPL_MAX_IMAGE_SIZE 16384

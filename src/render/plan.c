@@ -74,8 +74,10 @@ static const char* refuseOptions(const vplPlan* p)
                "--show, no --aov and no "
                "--lighting documented";
     }
-    if (o->output.pixelSize > 1 && (o->path.edgePixels > 0 || o->output.aovs != 0)) {
-        return "edge-pixels and aov need a value of each pixel: use --pixel-size 1";
+    if (o->output.pixelSize > 1 &&
+        (o->path.edgePixels > 0 || o->output.aovs != 0 || VPL_SHOWS[show].draw != NULL)) {
+        return "--edge-pixels, --aov and maps that --show shows have a value of each pixel: use --pixel-size "
+               "1";
     }
     const bool map = p->emitterCount > 0 && p->emitters[0].type != VPL_EMITTER_DIRECTIONAL &&
                      !p->emitterRays && o->method != VPL_METHOD_SSVP;

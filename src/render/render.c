@@ -14,7 +14,7 @@
 static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
     if (r->plan == NULL || r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH ||
-        r->kept.image != NULL || r->edges != NULL) {
+        r->kept.image != NULL || r->edges != NULL || r->plan->options.output.pixelSize > 1) {
         return vplRenderer_GetImage(r, imageOut, statsOut);
     }
     if (r->base == NULL) {

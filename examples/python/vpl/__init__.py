@@ -16,7 +16,7 @@ try:
 except ImportError:
     numpy = None
 
-VERSION = (0, 11)  # of the headers that the structures below repeat
+VERSION = (0, 12)  # of the headers that the structures below repeat
 _LAYERS = {"picture": 0, "direct": 1, "indirect": 2, "albedo": 4, "normal": 8, "depth": 16, "object": 32}
 _RESULTS = {1: KeyboardInterrupt, 2: MemoryError, 3: ValueError, 4: ValueError, 5: OSError, 6: ValueError}
 _LOG = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p)

@@ -19,8 +19,8 @@ static vplPlacementDef describeView(const vplPlan* p)
 {
     vplPlacementDef def = vplDefaultPlacementDef();
     def.camera = p->camera;
-    def.width = p->options.output.width;
-    def.height = p->options.output.height;
+    def.width = p->view.width;
+    def.height = p->view.height;
     def.pointCount = POINTS;
     def.seed = p->options.seed;
     return def;

@@ -41,8 +41,8 @@ static vplResult placeByView(const vplRun* run, const vplParticleDef* particles,
     TRY(vplCountParticles(run->context, &plain, NULL, 0, &totals));
     def.lighting = plan->shading;
     def.camera = plan->camera;
-    def.width = plan->options.output.width;
-    def.height = plan->options.output.height;
+    def.width = plan->view.width;
+    def.height = plan->view.height;
     def.oversampling = oversamplingFor(&plan->options.output);
     def.minDistance = vplClampDistance(run, (double)totals.lightCount);
     def.shadows = plan->options.lights.shadows != VPL_LIGHT_SHADOWS_NONE;

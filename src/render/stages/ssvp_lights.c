@@ -193,8 +193,8 @@ vplPlacementDef vplSsvpView(const vplRun* run)
     const vplPlan* plan = run->plan;
     vplPlacementDef def = vplDefaultPlacementDef();
     def.camera = plan->camera;
-    def.width = plan->options.output.width;
-    def.height = plan->options.output.height;
+    def.width = plan->view.width;
+    def.height = plan->view.height;
     def.minDistance = vplClampDistance(run, (double)plan->virtualLights);
     def.seed = plan->options.seed;
     def.index = run->pass;
