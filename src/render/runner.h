@@ -28,8 +28,10 @@ typedef struct vplRunner {
     vplRun run;
     vplHistory* history;
     vplRenderStats stats;
-    bool plans;          // results serve decisions and are not reported yet
-    bool foretells;      // the plan is for a reader: its bytes may take some time
+    bool plans;     // results serve decisions and are not reported yet
+    bool foretells; // the plan is for a reader: its bytes may take some time
+    vplLook look;
+    bool looked;         // `look` was taken (planner/look.h)
     bool choosesMethods; // the method was left to the planner, which does not refuse its own plans
     vplProgressFcn* progress;
     void* progressUser;

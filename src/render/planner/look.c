@@ -19,8 +19,8 @@ static vplPlacementDef describeView(const vplPlan* p)
 {
     vplPlacementDef def = vplDefaultPlacementDef();
     def.camera = p->camera;
-    def.width = p->view.width;
-    def.height = p->view.height;
+    def.width = p->options.output.width;
+    def.height = p->options.output.height;
     def.pointCount = POINTS;
     def.seed = p->options.seed;
     return def;
@@ -115,16 +115,21 @@ vplResult vplTakeLook(vplRunner* runner, const vplPlan* plan, vplLook* lookOut)
 {
     const vplGeometry* g = runner->run.results[VPL_STAGE_GEOMETRY];
     vplContext* context = runner->run.context;
-    const int workers = context->workerCount;
-    vplArena* scratch = vplArena_Create(context);
-    *lookOut = (vplLook){0};
-    context->workerCount = 1;
-    vplResult result = vplArena_Check(scratch);
-    if (result == VPL_SUCCESS && g->triangleCount > 0) {
-        result = lookAround(g, plan, scratch, lookOut);
-        result = result == VPL_SUCCESS ? shootPilots(g, plan, scratch, lookOut) : result;
+    if (!runner->looked) {
+        const int workers = context->workerCount;
+        vplArena* scratch = vplArena_Create(context);
+        runner->look = (vplLook){0};
+        context->workerCount = 1;
+        vplResult result = vplArena_Check(scratch);
+        if (result == VPL_SUCCESS && g->triangleCount > 0) {
+            result = lookAround(g, plan, scratch, &runner->look);
+            result = result == VPL_SUCCESS ? shootPilots(g, plan, scratch, &runner->look) : result;
+        }
+        context->workerCount = workers;
+        vplArena_Destroy(scratch);
+        TRY(result);
+        runner->looked = true;
     }
-    context->workerCount = workers;
-    vplArena_Destroy(scratch);
-    return result;
+    *lookOut = runner->look;
+    return VPL_SUCCESS;
 }

@@ -5,7 +5,7 @@
 
 #include "render/plan.h"
 
-// Takes the look; the geometry must be there, with its ray tree.
+// Takes the look, once for all plans of a runner; the geometry must be there, with its ray tree.
 vplResult vplTakeLook(vplRunner* runner, const vplPlan* plan, vplLook* lookOut);
 
 #endif
