@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of --pixel-size: pictures that are rendered with fewer pixels and enlarged, by choice or for want of time.
-#include "scenes.h"
+#include "shapes.h"
 
 #include "image/enlarge.h"
 #include "render/renderer.h"
@@ -100,6 +100,34 @@ TEST(LargePixelsAreThoseOfASmallPicture, 2)
         vplImage_Destroy(shown);
         vplImage_Destroy(base);
         vplImage_Destroy(wanted);
+    }
+    vplScene_Destroy(scene);
+}
+
+// What a history keeps of one size of pixels is not used for another.
+TEST(AHistoryKnowsTheSizeOfPixels, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    Shape sphere = icosphere(4); // many triangles per pixel: passes share a G-buffer
+    placeShape(&sphere, 0.4f, (double[3]){0, 0, 0}, (vplVec3){0.3f, 1, 0.5f});
+    addShape(scene, &sphere, true, NULL);
+    freeShape(&sphere);
+    for (int method = 0; method < METHOD_COUNT; method++) {
+        vplHistory* history;
+        assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
+        for (int pixelSize = 4; pixelSize > 0; pixelSize -= 3) {
+            const vplRenderOptions fresh = optionsFor(method, 32, 24, pixelSize);
+            vplRenderOptions kept = fresh;
+            kept.sequence.history = history;
+            kept.sequence.coherence = VPL_COHERENCE_OFF;
+            vplImage *a = renderScene(scene, &fresh, NULL), *b = renderScene(scene, &kept, NULL);
+            if (vplImage_Hash(a) != vplImage_Hash(b)) {
+                fail_msg("%s, pixel size %d", METHODS[method][1], pixelSize);
+            }
+            vplImage_Destroy(a);
+            vplImage_Destroy(b);
+        }
+        vplHistory_Destroy(history);
     }
     vplScene_Destroy(scene);
 }

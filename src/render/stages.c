@@ -283,8 +283,9 @@ static bool needsPaths(const vplPlan* p, char* why)
 
 #define IN(stage) (1u << VPL_STAGE_##stage)
 #define CHOICE_KEY                                                                                           \
-    "next-bounce size VIEW seed PASS min-distance max-bounces" // lights are chosen for what is seen
-#define SSVP_KEY "clusters max-clusters size VIEW oversampling cluster-metric w1 w2 coherence SHIFT"
+    "next-bounce size pixel-size VIEW seed PASS min-distance max-bounces" // lights are chosen for what is seen
+#define SSVP_KEY                                                                                             \
+    "clusters max-clusters size pixel-size VIEW oversampling cluster-metric w1 w2 coherence SHIFT"
 #define MAP_KEY                                                                                              \
     "paraboloid hemispheres cluster-place light-shadows show max-bounces second-bounce coherence SHIFT"
 #define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"
@@ -298,7 +299,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "clamp distance", 0.03, IN(GEOMETRY), "VIEW",
         needsNearDistance, vplMakeNearDistance, NULL, .report = NULL},
     [VPL_STAGE_EMITTER_MAPS] = {
-        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size supersample",
+        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size pixel-size supersample",
         needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps, .report = NULL},
     [VPL_STAGE_EMITTER_TREES] = {
         "emitter tree", 0.15, IN(GEOMETRY), "EMITTERS emitter-samples method lighting area-light-samples",
@@ -367,7 +368,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather GROUPS",
         needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_GBUFFER] = {
-        "visible surfaces", 0.2, IN(GEOMETRY), "size VIEW antialias ROWS",
+        "visible surfaces", 0.2, IN(GEOMETRY), "size pixel-size VIEW antialias ROWS",
         needsGbuffer, vplMakeGbuffer, vplDestroyGbuffer, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(EMITTER_TREES) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
