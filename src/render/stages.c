@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The table of stages, and when a picture needs each.
 #include "reference/light_path.h"
+#include "render/options.h"
 #include "render/plan.h"
 #include "render/show.h"
 #include "render/stages/make.h"
@@ -243,15 +244,16 @@ static bool needsGbuffer(const vplPlan* p, char* why)
 static bool needsPicture(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
+    const int width = vplRenderedWidth(o), height = vplRenderedHeight(o);
     char rays[32] = "";
     if (p->gathers) {
         snprintf(rays, sizeof rays, ", %d rays from each", p->options.radiosity.gather);
     }
     if (o->antialias > 1) {
-        return because(why, true, "%dx%d pixels%s; at edges the mean of %d samples", o->width, o->height,
-                       rays, o->antialias);
+        return because(why, true, "%dx%d pixels%s; at edges the mean of %d samples", width, height, rays,
+                       o->antialias);
     }
-    return because(why, true, "%dx%d pixels, %d sample%s each%s", o->width, o->height, o->supersample,
+    return because(why, true, "%dx%d pixels, %d sample%s each%s", width, height, o->supersample,
                    o->supersample > 1 ? "s" : "", rays);
 }
 

@@ -72,6 +72,7 @@ static vplResult enlargePixels(vplRenderer* r, int most, vplRenderOptions* o)
     while (o->output.pixelSize < most && !vplIsInTime(r, VPL_SURE_SHARE)) {
         o->output.pixelSize *= 2;
         TRY(vplRenderer_Plan(r, o, true));
+        vplDecide(r->plan, "pixel-size", "a coarse picture of all pixels would come too late");
     }
     return VPL_SUCCESS;
 }
