@@ -402,12 +402,13 @@ uint64_t renderValid(vplContext* context, FuzzLog* log, const uint8_t* bytes, si
     uint64_t hash = 0;
     vplHistory* history = NULL;
     vplRenderOptions options = makeOptions(&b);
+    const vplMachine machine = {1, NULL}; // what is small does not depend on the context's workers
     if (pick(&b, 4) > 0) { // without one, statistics of what the clamp takes may take long
         MUST(vplHistory_Create(context, &history) == VPL_SUCCESS);
     }
     options.sequence.history = history;
     vplScene* scene = makeScene(context, &b, log);
-    vplResult result = vplPlan_Create(scene, &options, NULL, &plan);
+    vplResult result = vplPlan_Create(scene, &options, &machine, &plan);
     if (result == VPL_SUCCESS && (plan->problem[0] != 0 || isSmall(plan))) {
         char problem[sizeof plan->problem];
         memcpy(problem, plan->problem, sizeof problem);
