@@ -37,7 +37,7 @@ vplResult vplRenderer_OpenSums(vplRenderer* r)
     vplContext* context = r->runner.run.context;
     const size_t values = vplValueCount(r->base);
     const vplWatch outer =
-        vplSetWatch(context, r->runner.progress, r->runner.progressUser, r->runner.stepFrom);
+        vplSetWatch(context, r->runner.progress, r->runner.progressUser, r->runner.reported);
     vplResult result = VPL_SUCCESS;
     for (int i = 0; i < 2 && result == VPL_SUCCESS; i++) {
         vplFree(context, r->sums[i]); // of a first pass that was cancelled

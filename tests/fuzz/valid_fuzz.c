@@ -403,7 +403,7 @@ uint64_t renderValid(vplContext* context, FuzzLog* log, const uint8_t* bytes, si
     vplHistory* history = NULL;
     vplRenderOptions options = makeOptions(&b);
     const vplMachine machine = {1, NULL}; // what is small does not depend on the context's workers
-    if (pick(&b, 4) > 0) { // without one, statistics of what the clamp takes may take long
+    if (pick(&b, 4) > 0) {                // without one, statistics of what the clamp takes may take long
         MUST(vplHistory_Create(context, &history) == VPL_SUCCESS);
     }
     options.sequence.history = history;
