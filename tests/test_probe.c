@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tests of what some rays tell about a scene before a plan is made.
+// Tests of the statistics that estimates of a plan's time are made with.
 #include "shapes.h"
 
 #include "math/vec.h"

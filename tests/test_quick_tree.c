@@ -18,7 +18,7 @@ static vplScene* sphereScene(vplContext* context)
     return scene;
 }
 
-// All triangles of up to so many copies of one: their codes are equal.
+// `count` copies of one triangle: their Morton codes are equal.
 static vplGeometry* copies(vplContext* context, int count)
 {
     Shape shape = {0};

@@ -41,7 +41,7 @@ VPL_HEADER_BEGIN
 
 // Largest width or height of an image, in pixels.
 #define VPL_MAX_IMAGE_SIZE 16384
-// Most pixels of a picture, along a side, that are rendered as one.
+// Largest vplOutputOptions.pixelSize: the side of the squares of pixels that are rendered as one pixel.
 #define VPL_MAX_PIXEL_SIZE 64
 // Most virtual lights one render may hold.
 #define VPL_MAX_LIGHTS (1 << 24)

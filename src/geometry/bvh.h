@@ -54,7 +54,7 @@ typedef struct vplBvh {
     vplBlockMarks* marks; // per block; NULL: none has any
     int nodeCount, blockCount;
     double cost;            // of a ray, relative, when it was built
-    bool quick;             // by vplGeometry_BuildTree
+    bool quick;             // it was built from groups of triangles
     struct vplArena* arena; // owns the arrays
 } vplBvh;
 
@@ -73,7 +73,7 @@ bool vplBvh_Refit(vplBvh* bvh, const vplGeometry* geometry, const uint8_t* chang
 // metres.
 double vplBvh_Cost(const vplBvh* bvh);
 
-// As vplGeometry_BuildRayTree, which builds no quick tree.
+// Builds the ray tree unless the geometry has one; `quick`: as for vplBvh_Create.
 vplResult vplGeometry_BuildTree(vplGeometry* geometry, bool quick);
 
 // The box of three corners, padded as vplBoundTriangle says.

@@ -153,16 +153,14 @@ vplResult vplGroupItems(vplBvhBuilder* b, vplBuildRange* all)
     c.ranges = vplArena_Alloc(b->scratch, (size_t)all->count, sizeof *c.ranges);
     c.boxes = vplArena_Alloc(b->scratch, (size_t)all->count, sizeof *c.boxes);
     c.ids = vplArena_Alloc(b->scratch, (size_t)all->count, sizeof *c.ids);
-    int32_t* order = vplArena_Alloc(b->scratch, (size_t)all->count, sizeof *order);
     TRY(vplArena_Check(b->scratch));
     addClusters(&c, 0, all->count);
     TRY(vplParallelForAsking(b->geometry->context, vplCountChunks(c.count, VPL_TRIANGLE_CHUNK), boundClusters,
                              &c));
-    for (int i = 0; i < c.count; i++) {
-        order[i] = i;
+    for (int i = 0; i < c.count; i++) { // those of the triangles are in c.ids now
+        b->ids[i] = i;
     }
     b->items = c.boxes;
-    b->ids = order;
     b->clusters = c.ranges;
     b->members = c.ids;
     b->leaf = b->perBlock = 1;

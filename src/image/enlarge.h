@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Pictures of more pixels.
+// Bilinear enlargement of pictures.
 #ifndef VPL_IMAGE_ENLARGE_H
 #define VPL_IMAGE_ENLARGE_H
 
 #include <vpl/image.h>
 
-// Makes a picture of width x height from one of fewer pixels that shows the same: each value is the bilinear mean of the four nearest pixels,
-// at the border of two or one. All workers.
+// Enlarges a picture to width x height by bilinear interpolation between the centres of its pixels. Beyond the outermost centres their values are
+// repeated. Uses all workers.
 vplResult vplImage_Enlarge(const vplImage* image, int width, int height, vplImage** enlargedOut);
 
 #endif

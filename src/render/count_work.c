@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The work of each stage of a plan, counted in the parts that vplSpeeds has times for. Work of another kind is counted as
 // so many of the nearest part; these numbers were fitted with vplUsualSpeeds (README.md, Time).
-#include "geometry/bvh.h"
-#include "math/sampling.h"
-#include "math/vec.h"
 #include "render/options.h"
 #include "render/plan.h"
 #include "render/probe.h"
@@ -194,6 +191,13 @@ static void addFurtherBounces(const Scale* s, vplWork* w)
     }
 }
 
+// Rays from the vertices of groups. The gather takes all corners of a triangle of which the camera sees one: half as many again as it sees.
+static double vertexRays(const Scale* s)
+{
+    const double grouped = s->plan->groupedTriangles / s->triangles;
+    return 1.5 * VPL_VERTEX_RAYS * grouped * vplProbe_SeenVertices(s->geometry, &s->plan->view);
+}
+
 static vplWork workOf(const Scale* s, vplStageId id)
 {
     const vplPlan* p = s->plan;
@@ -249,9 +253,8 @@ static vplWork workOf(const Scale* s, vplStageId id)
     case VPL_STAGE_SOLUTION: // about 20 sweeps
         w.counts[FORM_FACTOR] = p->linked ? 2000 * s->sides : 0.55 * pairs;
         break;
-    case VPL_STAGE_VERTEX_LIGHT: // VERTEX_RAYS from all corners of triangles of which the camera sees one
-        w.counts[PATH_RAY] = 64 * 1.5 * vplProbe_SeenVertices(s->geometry, &p->view) * p->groupedTriangles /
-                             s->triangles * s->pathDepth;
+    case VPL_STAGE_VERTEX_LIGHT:
+        w.counts[PATH_RAY] = vertexRays(s) * s->pathDepth;
         break;
     case VPL_STAGE_GBUFFER:
         w.counts[TRIANGLE] = viewTriangles(s);

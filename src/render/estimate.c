@@ -2,8 +2,8 @@
 // Counts and bytes of a plan. A stage that ran while decisions were made is known exactly; for the others
 // sizes follow from what they allocate. tests/test_plan.c compares the sum with what rendering holds.
 #include "radiosity/links/links.h"
-#include "render/options.h"
 #include "render/estimate_bytes.h"
+#include "render/options.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 #include "scene/scene.h"

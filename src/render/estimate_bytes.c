@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "render/options.h"
 #include "render/estimate_bytes.h"
 
+#include "render/options.h"
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 #include "visibility/hemi_map.h"

@@ -15,7 +15,7 @@ static vplVec3 towards(const vplView* v, int i)
     return vplAdd(v->forward, vplAdd(vplScale(sx, v->right), vplScale(sy, v->up)));
 }
 
-// Turns the normal of a hit to where the ray came from.
+// Finds the closest hit. Its normal faces the ray's origin.
 static bool hitAt(const vplGeometry* g, vplRay ray, vplHit* hit)
 {
     const bool found = vplGeometry_ClosestHit(g, &ray, hit);
@@ -51,7 +51,7 @@ vplProbe vplProbe_Take(const vplGeometry* g, const vplView* view, float nearPlan
                       pairs > 0 ? (double)facing / pairs : 0};
 }
 
-// Rays to one of every so many vertices, VERTICES of them or a few more.
+// Casts a ray from the eye to every n-th vertex, to about VERTICES in all.
 double vplProbe_SeenVertices(const vplGeometry* g, const vplView* view)
 {
     const int step = g->vertexCount < VERTICES ? 1 : g->vertexCount / VERTICES;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What some rays tell about a scene and a camera, for the estimates of a plan's time.
+// Statistics of a scene and a camera from a few rays, for the estimates of a plan's time.
 #ifndef VPL_RENDER_PROBE_H
 #define VPL_RENDER_PROBE_H
 
 #include <vpl/shading.h>
 
-// A few rays into the picture, and one from each surface that they hit.
+// Statistics of 96 rays through the picture, and of one ray from each surface that they hit.
 typedef struct vplProbe {
     double seen;     // share of the picture where a surface is
     double enclosed; // share of the directions from surfaces in which there is something

@@ -133,7 +133,7 @@ static bool watch(void* user, double fraction)
     return r->asked.progress == NULL || r->asked.progress(r->asked.progressUser, fraction);
 }
 
-// The time that it takes to hand over the picture of a render that has a time: to copy it, its mean and its hash. Mostly the system's clearing of memory.
+// The part of a budget that is kept for handing over the picture: copying it, its mean and its hash. Most of this time the system clears memory.
 static double finishingMs(const vplRenderOptions* o)
 {
     const double ms = 2e-5 * o->output.width * o->output.height;

@@ -77,19 +77,14 @@ static bool isCrowded(const vplRunner* r, const vplRenderOptions* o)
     return vplTrianglesPerPixel(r, o) > TRIANGLES_PER_PIXEL;
 }
 
-static double countPixels(const vplRenderOptions* o)
-{
-    return vplCountPixels(&o->output);
-}
-
 // Chooses the number of particles of a pass.
 static void chooseParticles(const vplRunner* r, vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
     const bool crowded = isCrowded(r, o);
-    o->particles.count = crowded                         ? PARTICLES_OF_LARGE_SCENE
-                         : countPixels(o) >= MANY_PIXELS ? PARTICLES_OF_LARGE_PICTURE
-                                                         : PARTICLES;
+    o->particles.count = crowded                                     ? PARTICLES_OF_LARGE_SCENE
+                         : vplCountPixels(&o->output) >= MANY_PIXELS ? PARTICLES_OF_LARGE_PICTURE
+                                                                     : PARTICLES;
     vplDecide(p, "particles", "%sin each pass; passes go on until the time or the error is reached",
               crowded ? "many triangles are drawn for each pixel " : "");
     if (crowded && o->stop.maxError > 0 && !(o->stop.budgetMs > 0)) {
@@ -105,7 +100,7 @@ enum { TINY_PICTURE = 10000 };
 
 bool vplIsTinyPicture(const vplRenderOptions* o)
 {
-    return countPixels(o) < TINY_PICTURE;
+    return vplCountPixels(&o->output) < TINY_PICTURE;
 }
 
 // In larger pictures K is 4 for small errors: below FINE, or below FINE_IF_CROWDED where triangles are as small as pixels. With K = 4 and K = 8
@@ -119,7 +114,7 @@ enum { FEW_TRIANGLES = 128, SMALL_PICTURE = 50000 };
 static bool allowsLittleBlur(const vplRunner* r, const vplRenderOptions* o)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const bool small = countPixels(o) < SMALL_PICTURE;
+    const bool small = vplCountPixels(&o->output) < SMALL_PICTURE;
     const double fine = isCrowded(r, o)                             ? FINE_IF_CROWDED
                         : g->triangleCount > FEW_TRIANGLES || small ? FINE
                                                                     : 0;
@@ -134,7 +129,7 @@ static const double LARGE_ERROR = 0.15;
 static void chooseLights(const vplRunner* r, vplPlan* p, double error)
 {
     vplRenderOptions* o = &p->options;
-    const bool large = countPixels(o) >= MANY_PIXELS;
+    const bool large = vplCountPixels(&o->output) >= MANY_PIXELS;
     const bool goes = o->stop.budgetMs > 0 || o->stop.maxError > 0;
     if (o->particles.count < 0 && goes) {
         chooseParticles(r, p);

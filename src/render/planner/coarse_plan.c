@@ -66,7 +66,7 @@ static bool suitsPatches(const vplRenderer* r, double rays, int* gatherOut)
     return vplHasTimeAlone(r) && vplPatchesSuitTime(&r->runner, r->plan, &r->asked, rays, gatherOut);
 }
 
-// Renders one pixel for 2x2, 4x4 or 8x8, up to `most`, until the coarse picture is foreseen to come in time.
+// Doubles the pixel size, up to `most`, until the coarse picture is foreseen to come in time.
 static vplResult enlargePixels(vplRenderer* r, int most, vplRenderOptions* o)
 {
     while (o->output.pixelSize < most && !vplIsInTime(r, VPL_SURE_SHARE)) {

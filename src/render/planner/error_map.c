@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Where the error of a picture lies: one value for each block of 8x8 pixels.
 #include "reference/path_trace.h"
+#include "render/options.h"
 #include "render/planner/contrast.h"
 #include "render/planner/edges.h"
-#include "render/options.h"
 #include "render/renderer.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -19,7 +19,7 @@ typedef struct Map {
     vplImage* image;
 } Map;
 
-// The pixel that is rendered for a pixel of the picture.
+// The index of the rendered pixel that covers a pixel of the picture.
 static size_t renderedPixel(const vplRenderer* r, size_t pixel)
 {
     const vplOutputOptions* o = &r->plan->options.output;

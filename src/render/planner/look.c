@@ -110,26 +110,29 @@ static vplResult shootPilots(const vplGeometry* g, const vplPlan* p, vplArena* s
     return result;
 }
 
-// One worker takes the look: to wake the others takes longer, 10 to 30 ms of a time of 50 where they sleep in a virtual machine.
-vplResult vplTakeLook(vplRunner* runner, const vplPlan* plan, vplLook* lookOut)
+// One worker takes the look, because waking the others may take longer: 10 to 30 ms in a virtual machine.
+static vplResult takeLook(vplContext* context, const vplGeometry* g, const vplPlan* plan, vplLook* look)
 {
-    const vplGeometry* g = runner->run.results[VPL_STAGE_GEOMETRY];
-    vplContext* context = runner->run.context;
-    if (!runner->looked) {
-        const int workers = context->workerCount;
-        vplArena* scratch = vplArena_Create(context);
-        runner->look = (vplLook){0};
-        context->workerCount = 1;
-        vplResult result = vplArena_Check(scratch);
-        if (result == VPL_SUCCESS && g->triangleCount > 0) {
-            result = lookAround(g, plan, scratch, &runner->look);
-            result = result == VPL_SUCCESS ? shootPilots(g, plan, scratch, &runner->look) : result;
-        }
-        context->workerCount = workers;
-        vplArena_Destroy(scratch);
-        TRY(result);
-        runner->looked = true;
+    const int workers = context->workerCount;
+    vplArena* scratch = vplArena_Create(context);
+    *look = (vplLook){0};
+    context->workerCount = 1;
+    vplResult result = vplArena_Check(scratch);
+    if (result == VPL_SUCCESS && g->triangleCount > 0) {
+        result = lookAround(g, plan, scratch, look);
+        result = result == VPL_SUCCESS ? shootPilots(g, plan, scratch, look) : result;
     }
-    *lookOut = runner->look;
+    context->workerCount = workers;
+    vplArena_Destroy(scratch);
+    return result;
+}
+
+vplResult vplTakeLook(vplRunner* r, const vplPlan* plan, vplLook* lookOut)
+{
+    if (!r->looked) {
+        TRY(takeLook(r->run.context, r->run.results[VPL_STAGE_GEOMETRY], plan, &r->look));
+        r->looked = true;
+    }
+    *lookOut = r->look;
     return VPL_SUCCESS;
 }

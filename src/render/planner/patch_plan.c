@@ -2,6 +2,7 @@
 #include "render/planner/patch_plan.h"
 
 #include "radiosity/factors/form_factors.h"
+#include "render/options.h"
 #include "render/planner/planner.h"
 #include "render/renderer.h"
 #include "render/stages/results.h"
@@ -51,7 +52,7 @@ static bool areSmallPart(const vplRunner* r, const vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const vplRenderOptions* o = &p->options;
-    const double pixels = (double)o->output.width * o->output.height;
+    const double pixels = vplCountPixels(&o->output);
     const double emitters = vplAskedEmitters(p);
     return o->stop.maxError > 0 && o->stop.maxError < SMALL_ERROR && emitters >= MANY_EMITTERS &&
            g->triangleCount <= VPL_FIRST_PATCHES &&
@@ -104,7 +105,7 @@ static bool fitInto(const vplRunner* r, const vplPlan* p, const vplRenderOptions
                     double rays)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const double pixels = (double)o->output.width * o->output.height;
+    const double pixels = vplCountPixels(&o->output);
     const double needs =
         raysOfPatches(g, count) + PIXEL_RAYS * pixels * p->emitterCount + VPL_PATH_RAY * pixels * gather;
     return needs <= rays && count <= vplMostPatches(r->run.context);
@@ -166,7 +167,7 @@ static bool isHidden(const vplPlan* p)
 static double raysForReaching(const vplPlan* p, double reaching)
 {
     const vplRenderOptions* o = &p->options;
-    const double error = o->stop.maxError, pixels = (double)o->output.width * o->output.height;
+    const double error = o->stop.maxError, pixels = vplCountPixels(&o->output);
     const double worth = fmax(1, reaching) / fmax(1, p->look.lights);
     return error > 0 && isHidden(p) ? HIDDEN_RAYS / worth * pixels / (error * error) : 0;
 }
@@ -201,7 +202,7 @@ static double patchesOfPlain(const vplRunner* r, const vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
     const double error = o->stop.maxError, passes = fmax(1, ONE_PASS * ONE_PASS / (error * error));
-    const double pixels = (double)o->output.width * o->output.height * passes;
+    const double pixels = vplCountPixels(&o->output) * passes;
     const double patches = isPlain(r, p) ? patchesFor(error) : INFINITY;
     return patches > vplMostPatches(r->run.context) || pixels < PIXELS_PER_PATCH * patches ? 0 : patches;
 }

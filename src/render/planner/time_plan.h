@@ -6,7 +6,7 @@
 #include "render/renderer.h"
 
 // The time in ms that a plan, none of whose passes has begun, is foreseen to need for its first picture. Geometry, patches and their sides do not count if
-// planning has made it; times of virtual lights are multiplied by the pace of the renderer.
+// planning has made them; times of virtual lights are multiplied by the pace of the renderer.
 double vplTimeOfFirst(const vplRenderer* renderer);
 
 // A plan becomes smaller until its first picture is foreseen in this share of the time that is left: a picture that is not ready when

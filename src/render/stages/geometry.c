@@ -5,7 +5,7 @@
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
-// A tree that would take more than this share of the time is built quickly.
+// A ray tree that would take more than this share of the budget is built from groups of triangles.
 static const double SHARE_OF_TREE = 0.3;
 
 static vplResult buildTree(const vplRun* run, vplGeometry* g)
@@ -18,19 +18,13 @@ static vplResult buildTree(const vplRun* run, vplGeometry* g)
 vplResult vplMakeGeometry(const vplRun* run, void** resultOut)
 {
     vplGeometry* geometry = run->before;
-    if (geometry != NULL && vplGeometry_CanUpdate(geometry, run->scene)) {
-        *resultOut = geometry;
-        TRY(vplGeometry_Update(geometry, run->scene));
-        return run->plan->castsRays ? buildTree(run, geometry) : VPL_SUCCESS;
+    const bool updates = geometry != NULL && vplGeometry_CanUpdate(geometry, run->scene);
+    if (!updates) {
+        TRY(vplGeometry_CreateForRaster(run->scene, &geometry));
     }
-    TRY(vplGeometry_CreateForRaster(run->scene, &geometry));
-    const vplResult result = run->plan->castsRays ? buildTree(run, geometry) : VPL_SUCCESS;
-    if (result != VPL_SUCCESS) {
-        vplGeometry_Destroy(geometry);
-        return result;
-    }
-    *resultOut = geometry;
-    return VPL_SUCCESS;
+    *resultOut = geometry; // the runner destroys it if what follows fails
+    TRY(updates ? vplGeometry_Update(geometry, run->scene) : VPL_SUCCESS);
+    return run->plan->castsRays ? buildTree(run, geometry) : VPL_SUCCESS;
 }
 
 void vplDestroyGeometry(void* result)

@@ -11,8 +11,7 @@
 
 #include <math.h>
 
-// Rays from each vertex, and vertices per task.
-enum { RAYS = 64, CHUNK = 1024 };
+enum { CHUNK = 1024 }; // vertices per task
 
 typedef struct Watch {
     const vplPatchMesh* mesh;
@@ -82,7 +81,7 @@ vplResult vplGatherAtGroups(const vplRun* run, const vplPatchMesh* mesh, vplRgb*
     TRY(findNeeded(run, mesh, needed));
     vplFindReflected(mesh->sides, s->radiosity, reflected);
     const vplVertexGather gather = {.radiosity = reflected,
-                                    .rays = RAYS,
+                                    .rays = VPL_VERTEX_RAYS,
                                     .only = needed,
                                     .seed = run->plan->options.seed,
                                     .progress = run->progress,

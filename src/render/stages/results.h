@@ -11,6 +11,7 @@
 // VPL_STAGE_LIGHT_PATHS has a double: the share of reflected light that vplMeasureFurther measures.
 // VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light, for a final gather of all
 // light but that of emitters, at the vertices of the patch mesh, [vertex][front, back].
+enum { VPL_VERTEX_RAYS = 64 }; // of the gather, from each of these vertices
 
 // VPL_STAGE_EMITTER_MAPS: one entry per emitter.
 typedef struct vplEmitterMaps {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "render/options.h"
 #include "render/stages/shadow_choice.h"
 
 #include "math/vec.h"
+#include "render/options.h"
 #include "render/stages/results.h"
 #include "visibility/hemi_map.h"
 
