@@ -15,7 +15,7 @@ static bool isExtreme(const vplTriangleCorners* t)
 {
     float longest = 0;
     for (int edge = 0; edge < 3; edge++) {
-        longest = fmaxf(longest, vplLargestOf(vplSub(t->corner[edge], t->corner[(edge + 1) % 3])));
+        longest = vplMaxf(longest, vplLargestOf(vplSub(t->corner[edge], t->corner[(edge + 1) % 3])));
     }
     return !(longest >= 0x1p-38f && longest <= 0x1p18f);
 }

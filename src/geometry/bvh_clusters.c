@@ -5,10 +5,10 @@
 #include "geometry/triangle.h"
 
 enum {
-    AXIS_BITS = 10,         // of a code, per axis
-    DIGIT_BITS = AXIS_BITS, // sorted in one pass
+    AXIS_BITS = 7,   // of a code, per axis; triangles of one cell stay in the order of their mesh
+    DIGIT_BITS = 11, // sorted in one pass
     DIGITS = 1 << DIGIT_BITS,
-    PASSES = 3
+    PASSES = (3 * AXIS_BITS + DIGIT_BITS - 1) / DIGIT_BITS
 };
 
 // A triangle's place along the curve, and its index among the items.

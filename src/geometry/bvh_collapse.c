@@ -73,10 +73,18 @@ void vplFinishNode(const vplBvhBuilder* b, vplBinary* node, const vplBuildCosts*
 
 // ---- nodes and blocks
 
-// A walk over the binary tree: the first counts nodes and blocks, the second fills them.
+// A wide node before its boxes are filled in.
+typedef struct WideNode {
+    int32_t from[VPL_BVH_WIDTH]; // nodes of the binary tree that become its children
+    int32_t child[VPL_BVH_WIDTH];
+    int32_t count;
+} WideNode;
+
+// A walk over the binary tree: the first counts nodes and blocks, the second lists them.
 typedef struct Collapse {
     const vplBvhBuilder* builder;
     vplBvh* bvh;
+    WideNode* nodes;
     vplItemRange* blockItems; // NULL during the first walk
 } Collapse;
 
@@ -96,56 +104,60 @@ static void listChildren(const vplBvhBuilder* b, int index, int count, int child
     listChildren(b, node->right, count - node->leftShare[count - 1], children, childCount);
 }
 
-// Any-hit rays visit children in this order (bench/rays: 1.4x the random rays in Sponza, 0.9x its shadow
-// rays).
-static void sortChildren(const vplBvhBuilder* b, int children[VPL_BVH_WIDTH], int count)
-{
-    for (int i = 1; i < count; i++) {
-        for (int k = i; k > 0 && b->binary[children[k - 1]].hitsPerCost < b->binary[children[k]].hitsPerCost;
-             k--) {
-            const int swap = children[k];
-            children[k] = children[k - 1];
-            children[k - 1] = swap;
-        }
-    }
-}
-
-static void setChild(vplBvhNode* node, int i, const vplBinary* child)
-{
-    vplBvhNode_SetBox(node, i, child ? child->box : vplBox_Empty());
-    node->child[i] = 0;
-}
-
 // Adds a binary node and all below. Returns its number as a child. Parents come before their children.
 static int32_t addChild(Collapse* c, int index, bool mustBeNode)
 {
     const vplBinary* from = &c->builder->binary[index];
-    const bool filling = c->blockItems != NULL;
+    const bool listing = c->blockItems != NULL;
     vplBvh* bvh = c->bvh;
     if (from->left < 0 || (from->isBlock && !mustBeNode)) {
-        if (filling) {
+        if (listing) {
             c->blockItems[bvh->blockCount] = (vplItemRange){from->first, from->count};
         }
         return ~bvh->blockCount++;
     }
-    int children[VPL_BVH_WIDTH], count = 0;
-    listChildren(c->builder, from->left, from->wideShare, children, &count);
-    listChildren(c->builder, from->right, VPL_BVH_WIDTH - from->wideShare, children, &count);
+    WideNode counted = {.count = 0}, *node = listing ? &c->nodes[bvh->nodeCount] : &counted;
     const int place = bvh->nodeCount++;
-    if (filling) {
-        sortChildren(c->builder, children, count);
-        bvh->nodes[place].count = count;
-    }
-    for (int i = 0; filling && i < VPL_BVH_WIDTH; i++) {
-        setChild(&bvh->nodes[place], i, i < count ? &c->builder->binary[children[i]] : NULL);
-    }
-    for (int i = 0; i < count; i++) {
-        const int32_t child = addChild(c, children[i], false);
-        if (filling) {
-            bvh->nodes[place].child[i] = child;
-        }
+    node->count = 0;
+    listChildren(c->builder, from->left, from->wideShare, node->from, &node->count);
+    listChildren(c->builder, from->right, VPL_BVH_WIDTH - from->wideShare, node->from, &node->count);
+    for (int i = 0; i < node->count; i++) {
+        node->child[i] = addChild(c, node->from[i], false);
     }
     return place;
+}
+
+// Any-hit rays visit children in this order (bench/rays: 1.4x the random rays in Sponza, 0.9x its shadow
+// rays).
+static void sortChildren(const vplBvhBuilder* b, WideNode* node)
+{
+    float worth[VPL_BVH_WIDTH];
+    for (int i = 0; i < node->count; i++) { // by insertion
+        const int32_t from = node->from[i], child = node->child[i];
+        const float value = b->binary[from].hitsPerCost;
+        int at = i;
+        for (; at > 0 && worth[at - 1] < value; at--) {
+            worth[at] = worth[at - 1];
+            node->from[at] = node->from[at - 1];
+            node->child[at] = node->child[at - 1];
+        }
+        worth[at] = value;
+        node->from[at] = from;
+        node->child[at] = child;
+    }
+}
+
+static void fillNode(const Collapse* c, int index)
+{
+    WideNode* from = &c->nodes[index];
+    sortChildren(c->builder, from);
+    vplBvhNode* node = &c->bvh->nodes[index];
+    for (int i = 0; i < VPL_BVH_WIDTH; i++) {
+        const bool used = i < from->count;
+        vplBvhNode_SetBox(node, i, used ? c->builder->binary[from->from[i]].box : vplBox_Empty());
+        node->child[i] = used ? from->child[i] : 0;
+    }
+    node->count = from->count;
 }
 
 static void fillBlock(const Collapse* c, int index)
@@ -169,14 +181,21 @@ static void fillBlock(const Collapse* c, int index)
         vplTriangleBlock_Fill(&c->bvh->blocks[index], c->builder->geometry, ids, items->count);
 }
 
-static void fillBlocks(void* data, int task, int worker)
+// Tasks fill all nodes, VPL_TRIANGLE_CHUNK in each, and then the blocks.
+static void fillChunk(void* data, int task, int worker)
 {
     (void)worker;
     const Collapse* c = data;
-    const int first = task * VPL_TRIANGLE_CHUNK,
-              end = vplEndOfChunk(c->bvh->blockCount, first, VPL_TRIANGLE_CHUNK);
+    const int nodeTasks = vplCountChunks(c->bvh->nodeCount, VPL_TRIANGLE_CHUNK);
+    const bool nodes = task < nodeTasks;
+    const int first = (nodes ? task : task - nodeTasks) * VPL_TRIANGLE_CHUNK;
+    const int end = vplEndOfChunk(nodes ? c->bvh->nodeCount : c->bvh->blockCount, first, VPL_TRIANGLE_CHUNK);
     for (int i = first; i < end; i++) {
-        fillBlock(c, i);
+        if (nodes) {
+            fillNode(c, i);
+        } else {
+            fillBlock(c, i);
+        }
     }
 }
 
@@ -187,15 +206,17 @@ static vplResult allocate(Collapse* c)
     bvh->nodes = nodes > 0 ? vplArena_Alloc(bvh->arena, nodes, sizeof *bvh->nodes) : NULL;
     bvh->blocks = vplArena_Alloc(bvh->arena, blocks, sizeof *bvh->blocks);
     bvh->marks = vplArena_Alloc(bvh->arena, blocks, sizeof *bvh->marks);
+    c->nodes = nodes > 0 ? vplArena_Alloc(c->builder->scratch, nodes, sizeof *c->nodes) : NULL;
     c->blockItems = vplArena_Alloc(c->builder->scratch, blocks, sizeof *c->blockItems);
     TRY(vplArena_Check(bvh->arena));
     return vplArena_Check(c->builder->scratch);
 }
 
-static void fillAllBlocks(Collapse* c)
+static void fillAll(Collapse* c)
 {
-    vplParallelFor(c->builder->geometry->context, vplCountChunks(c->bvh->blockCount, VPL_TRIANGLE_CHUNK),
-                   fillBlocks, c);
+    const int tasks = vplCountChunks(c->bvh->nodeCount, VPL_TRIANGLE_CHUNK) +
+                      vplCountChunks(c->bvh->blockCount, VPL_TRIANGLE_CHUNK);
+    vplParallelFor(c->builder->geometry->context, tasks, fillChunk, c);
     bool any = false;
     for (int i = 0; i < c->bvh->blockCount; i++) {
         any = any || c->bvh->marks[i].extreme != 0 || c->bvh->marks[i].byFormula != 0;
@@ -205,25 +226,25 @@ static void fillAllBlocks(Collapse* c)
 
 vplResult vplCollapse(const vplBvhBuilder* builder, int root, vplBvh* bvh)
 {
-    Collapse c = {builder, bvh, NULL};
+    Collapse c = {.builder = builder, .bvh = bvh};
     addChild(&c, root, true);
     TRY(allocate(&c));
     bvh->nodeCount = bvh->blockCount = 0;
     addChild(&c, root, true);
-    fillAllBlocks(&c);
+    fillAll(&c);
     bvh->cost = vplBvh_Cost(bvh);
     return VPL_SUCCESS;
 }
 
 vplResult vplMakeBlocks(const vplBvhBuilder* builder, int itemCount, vplBvh* bvh)
 {
-    Collapse c = {builder, bvh, NULL};
+    Collapse c = {.builder = builder, .bvh = bvh};
     bvh->blockCount = (itemCount + VPL_BVH_WIDTH - 1) / VPL_BVH_WIDTH;
     TRY(allocate(&c));
     for (int i = 0; i < bvh->blockCount; i++) {
         const int first = i * VPL_BVH_WIDTH, rest = itemCount - first;
         c.blockItems[i] = (vplItemRange){first, rest < VPL_BVH_WIDTH ? rest : VPL_BVH_WIDTH};
     }
-    fillAllBlocks(&c);
+    fillAll(&c);
     return VPL_SUCCESS;
 }

@@ -198,7 +198,7 @@ void vplSplitRange(const vplBvhBuilder* b, const vplBuildRange* range, int depth
 {
     Split split = {INFINITY, 0, 0};
     int left = range->count / 2;
-    if (depth < HALVING_DEPTH) {
+    if (range->count > 2 && depth < HALVING_DEPTH) { // two are halved at any plane
         const Binning binning = makeBinning(range);
         Bins bins;
         fillBins(b, range, &binning, &bins);

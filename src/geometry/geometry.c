@@ -154,8 +154,8 @@ static void findBounds(vplGeometry* g)
 {
     for (int i = 0; i < g->vertexCount; i++) {
         const vplVec3 p = g->positions[i], low = i > 0 ? g->boundsMin : p, high = i > 0 ? g->boundsMax : p;
-        g->boundsMin = vplVec(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
-        g->boundsMax = vplVec(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
+        g->boundsMin = vplVec(vplMinf(low.x, p.x), vplMinf(low.y, p.y), vplMinf(low.z, p.z));
+        g->boundsMax = vplVec(vplMaxf(high.x, p.x), vplMaxf(high.y, p.y), vplMaxf(high.z, p.z));
     }
 }
 

@@ -114,11 +114,9 @@ static void fillVertices(void* data, int chunk, int worker)
     }
 }
 
-static vplVec3 normalOf(const vplGeometryObject* object, int triangle, const vplTriangleCorners* corners)
+static vplVec3 normalOf(const vplGeometryObject* object, int triangle, const double cross[3])
 {
     if (object->type == VPL_OBJECT_MESH) {
-        double cross[3];
-        vplTriangle_Cross(corners, cross);
         return unit(cross);
     }
     const float* n = object->placement.normal[object->type == VPL_OBJECT_QUAD ? VPL_FACE_QUAD : triangle / 2];
@@ -144,14 +142,16 @@ static void fillTriangles(void* data, int chunk, int worker)
         const int material = object->material >= 0 ? object->material : f->shape.materials[i];
         const vplRgb rho = b->scene->materials[material].diffuse;
         const vplTriangleCorners corners = vplCornersOf(b->positions + object->firstVertex, index);
-        const double a = vplTriangle_Area(&corners);
+        double cross[3];
+        vplTriangle_Cross(&corners, cross);
+        const double a = vplAreaOfCross(cross);
         sums.area += a;
         sums.rgb[0] += a * rho.r;
         sums.rgb[1] += a * rho.g;
         sums.rgb[2] += a * rho.b;
         b->owners[at] = f->owner;
         b->triangleMaterials[at] = material;
-        b->normals[at] = normalOf(object, i, &corners);
+        b->normals[at] = normalOf(object, i, cross);
     }
     f->sums[chunk] = sums;
 }

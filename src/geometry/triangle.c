@@ -27,11 +27,16 @@ void vplTriangle_Cross(const vplTriangleCorners* triangle, double cross[3])
     vplCross3(e.u, e.v, cross);
 }
 
+double vplAreaOfCross(const double cross[3])
+{
+    return 0.5 * sqrt(vplDot3(cross, cross));
+}
+
 double vplTriangle_Area(const vplTriangleCorners* triangle)
 {
-    double c[3];
-    vplTriangle_Cross(triangle, c);
-    return 0.5 * sqrt(vplDot3(c, c));
+    double cross[3];
+    vplTriangle_Cross(triangle, cross);
+    return vplAreaOfCross(cross);
 }
 
 double vplGeometry_TriangleArea(const vplGeometry* g, int triangle)

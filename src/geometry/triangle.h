@@ -21,7 +21,7 @@ static inline vplTriangleCorners vplCornersOf(const vplVec3* positions, const ui
 // The largest magnitude of a coordinate, metres.
 static inline float vplGeometry_LargestCoordinate(const vplGeometry* g)
 {
-    return fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax));
+    return vplMaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax));
 }
 
 // The corners of a triangle in world space.
@@ -37,6 +37,9 @@ void vplTriangle_Cross(const vplTriangleCorners* triangle, double cross[3]);
 
 // Area in square metres, computed in double from the rounded corners.
 double vplTriangle_Area(const vplTriangleCorners* triangle);
+
+// The same, of a triangle's cross product.
+double vplAreaOfCross(const double cross[3]);
 
 double vplGeometry_TriangleArea(const vplGeometry* geometry, int triangle);
 

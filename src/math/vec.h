@@ -3,6 +3,8 @@
 #ifndef VPL_MATH_VEC_H
 #define VPL_MATH_VEC_H
 
+#include "math/scalar.h"
+
 #include <vpl/vecmath.h>
 
 #include <math.h>
@@ -47,10 +49,10 @@ static inline float vplLength(vplVec3 a)
     return sqrtf(vplDot(a, a));
 }
 
-// The largest magnitude of a component.
+// The largest magnitude of a component. (fmaxf is a call to libm.)
 static inline float vplLargestOf(vplVec3 a)
 {
-    return fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z)));
+    return vplMaxf(fabsf(a.x), vplMaxf(fabsf(a.y), fabsf(a.z)));
 }
 
 // The length of a cross product of edges, whose square leaves float's range above 4e9 m and below 1e-9 m.
