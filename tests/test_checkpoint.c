@@ -3,6 +3,7 @@
 #include "pass_cases.h"
 
 #include "base/file.h"
+#include "render/renderer.h"
 #include "render/state_stream.h"
 
 #include <stdlib.h>
@@ -254,4 +255,47 @@ TEST_ALONE(StreamsNoteWhatIsNotFinite)
         assert_int_equal(s.finite, at == 3);
         assert_int_equal(s.at, sizeof bytes);
     }
+}
+
+// What a coarse picture replaces begins anew, with whatever options.
+TEST(AStateOfACoarsePictureBeginsAnew, 2)
+{
+    const vplSpeeds slow = slowerSpeeds(1e10);
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = VPL_METHOD_KELLER;
+    o.output.width = o.output.height = 24;
+    o.particles.count = 100;
+    for (int during = 0; during < 2; during++) { // its picture, or the plan that follows
+        vplRenderer* r;
+        vplRenderStats stats;
+        Seen first, last, ended;
+        bool done;
+        o.stop.budgetMs = 1e7;
+        o.stop.passes = 0;
+        assert_int_equal(vplContext_SetSpeeds(context, &slow), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        assert_true(vplRenderer_HasState(r) && r->coarse);
+        if (during == 0) {
+            assert_int_equal(vplRenderer_RunPass(r), VPL_SUCCESS);
+            r->done = 1;
+        } else {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+            assert_true(!done && r->done == 0);
+        }
+        assert_int_equal(vplRenderer_Save(r, stateFile()), VPL_SUCCESS);
+        vplRenderer_Destroy(r);
+        assert_int_equal(vplContext_SetSpeeds(context, NULL), VPL_SUCCESS);
+        o.stop.budgetMs = 0;
+        o.stop.passes = 2;
+        goOn(scene, &o, &first, &last, &stats);
+        assert_int_equal(stats.passes, 2);
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        stepToEnd(r);
+        ended = look(r, NULL);
+        assertSeenSame(&last, &ended);
+        vplRenderer_Destroy(r);
+    }
+    unlink(stateFile());
+    vplScene_Destroy(scene);
 }

@@ -90,7 +90,6 @@ TEST(AnInterruptedPassIsNoPartOfThePicture, 2)
     assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
     vplRenderOptions replay = vplRenderer_GetPlan(r)->options;
     replay.lights.minDistance = -1; // each pass has its own
-    replay.lights.shadows = VPL_LIGHT_SHADOWS_USUAL;
     replay.stop.budgetMs = 0;
     replay.stop.passes = vplRenderer_GetPlan(r)->progressive ? stats.passes : 0;
     vplImage_Destroy(image);

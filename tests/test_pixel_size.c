@@ -2,7 +2,9 @@
 // Tests of --pixel-size: pictures that are rendered with fewer pixels and enlarged, by choice or for want of time.
 #include "shapes.h"
 
+#include "base/clock.h"
 #include "image/enlarge.h"
+#include "render/planner/time_plan.h"
 #include "render/renderer.h"
 
 #include <vpl/imagetools.h>
@@ -71,6 +73,7 @@ static const char* const METHODS[][8] = {
     {"method", "keller", "particles", "100", "placement", "view", "pipeline", "deferred"},
     {"method", "ssvp", "first-bounce", "100", "second-bounce", "50", "clusters", "8"},
     {"method", "radiosity", "patches", "100"},
+    {"method", "path", "spp", "4"},
 };
 enum { METHOD_COUNT = sizeof METHODS / sizeof *METHODS };
 
@@ -189,10 +192,12 @@ TEST(WhatNeedsEachPixelRefusesLargeOnes, 1)
 // ---- for want of time
 
 // Renders with machines that are foreseen to be so many times slower, and returns the size of the pixels of the first plan.
-static int firstPixelSize(vplContext* context, const vplScene* scene, double times, vplRenderer** rendererOut)
+static int firstPixelSize(vplContext* context, const vplScene* scene, vplMethod method, double times,
+                          vplRenderer** rendererOut)
 {
     const vplSpeeds slow = slowerSpeeds(times);
     vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = method;
     o.output.width = 96;
     o.output.height = 54;
     o.stop.budgetMs = 1e7; // so that the time that planning takes does not count
@@ -207,9 +212,9 @@ TEST(LittleTimeMakesPixelsLarger, 2)
     vplScene* scene = openScene(context, "examples/scenes/flat.json");
     vplRenderer* r;
     bool done;
-    assert_int_equal(firstPixelSize(context, scene, 1, &r), 1);
+    assert_int_equal(firstPixelSize(context, scene, VPL_METHOD_AUTO, 1, &r), 1);
     vplRenderer_Destroy(r);
-    assert_int_equal(firstPixelSize(context, scene, 1e10, &r), 8);
+    assert_int_equal(firstPixelSize(context, scene, VPL_METHOD_AUTO, 1e10, &r), 8);
     assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
     assert_false(done);
     for (int pixelSize = 8; pixelSize > 0; pixelSize = pixelSize == 8 ? 1 : 0) {
@@ -227,6 +232,57 @@ TEST(LittleTimeMakesPixelsLarger, 2)
         vplImage_Destroy(again);
     }
     vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+    assert_int_equal(vplContext_SetSpeeds(context, NULL), VPL_SUCCESS);
+}
+
+// The methods that callers choose begin with large pixels, too.
+TEST(AllMethodsBeginWithLargePixels, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    for (vplMethod method = VPL_METHOD_INSTANT_RADIOSITY; method < VPL_METHOD_AUTO; method++) {
+        vplRenderer* r;
+        bool done;
+        assert_int_equal(firstPixelSize(context, scene, method, 1, &r), 1);
+        vplRenderer_Destroy(r);
+        assert_int_equal(firstPixelSize(context, scene, method, 1e10, &r), 8);
+        assert_true(r->coarse && r->plan->options.method == method);
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS); // was quicker than foreseen
+        assert_false(done);
+        assert_int_equal(r->plan->options.output.pixelSize, 1);
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+    assert_int_equal(vplContext_SetSpeeds(context, NULL), VPL_SUCCESS);
+}
+
+// Pixels become as small as the time allows that the coarse picture took; if no smaller ones fit, they get more paths.
+TEST(PathsFillTheTime, 2)
+{
+    static const struct {
+        double left, took; // ms
+        int pixelSize;
+    } CASES[] = {{1e6, 1e3, 1}, {1e6, 1e5, 3}, {1e6, 7e5, 8}, {1e6, 1e9, 8}};
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        vplRenderer* r;
+        bool done;
+        assert_int_equal(firstPixelSize(context, scene, VPL_METHOD_PATH, 1e10, &r), 8);
+        assert_int_equal(vplRenderer_RunPass(r), VPL_SUCCESS);
+        r->done = 1;
+        r->passMs = CASES[i].took;
+        r->deadline = vplClockMs() + CASES[i].left;
+        assert_int_equal(vplFollowCoarse(r, &done), VPL_SUCCESS);
+        const vplRenderOptions* o = &r->plan->options;
+        if (o->output.pixelSize != CASES[i].pixelSize) {
+            fail_msg("%zu: %d", i, o->output.pixelSize);
+        }
+        const bool more = CASES[i].pixelSize == 8; // in the same plan
+        assert_int_equal(r->paths, more ? 1 : 0);
+        assert_int_equal(o->path.samples, CASES[i].pixelSize == 3 ? 1 : VPL_MAX_SAMPLES);
+        assert_int_equal(r->coarse, CASES[i].pixelSize == 3);
+        vplRenderer_Destroy(r);
+    }
     vplScene_Destroy(scene);
     assert_int_equal(vplContext_SetSpeeds(context, NULL), VPL_SUCCESS);
 }

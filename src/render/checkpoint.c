@@ -39,12 +39,14 @@ static vplStateHeader describe(const vplRenderer* r, const vplByteBuffer* text)
 {
     const vplOutputOptions* o = &r->plan->options.output;
     const uint32_t parts = r->done > 0 ? vplState_PartsOf(r->plan) : 0;
+    const bool coarse = r->coarse || o->pixelSize > r->asked.output.pixelSize;
+    const uint32_t plan = (r->replanned ? VPL_STATE_REPLANNED : 0) | (coarse ? VPL_STATE_COARSE : 0);
     vplStateHeader h = {.version = VPL_STATE_VERSION,
                         .textBytes = (uint32_t)text->size,
                         .scene = vplRenderer_HashScene(r),
                         .width = (uint32_t)vplRenderedWidth(o),
                         .height = (uint32_t)vplRenderedHeight(o),
-                        .parts = parts,
+                        .parts = parts | plan,
                         .passes = (uint32_t)r->done,
                         .truth = r->truth != NULL && r->asked.stop.maxError > 0
                                      ? (uint32_t)vplTruth_GetState(r->truth).count

@@ -98,15 +98,21 @@ static vplResult checkOptions(const Loading* l, Lines was, Lines is)
     return VPL_SUCCESS;
 }
 
+static vplResult checkScene(const Loading* l)
+{
+    const vplRenderer* r = l->renderer;
+    return l->header.scene == vplRenderer_HashScene(r)
+               ? VPL_SUCCESS
+               : vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
+                         "%s: saved with another scene or view, or the scene was changed since", l->path);
+}
+
 static vplResult checkRender(const Loading* l)
 {
     const vplRenderer* r = l->renderer;
     const vplStateHeader* h = &l->header;
     const vplContext* context = r->runner.run.context;
-    if (h->scene != vplRenderer_HashScene(r)) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "%s: saved with another scene or view, or the scene was changed since", l->path);
-    }
+    TRY(checkScene(l));
     vplByteBuffer text = {.context = r->runner.run.context};
     vplReplayList(r->plan, &text);
     const char *was = (const char*)l->stream.bytes + VPL_STATE_HEADER_BYTES, *is = (const char*)text.bytes;
@@ -116,7 +122,7 @@ static vplResult checkRender(const Loading* l)
     vplFree(r->runner.run.context, text.bytes);
     TRY(result);
     const uint32_t parts = vplState_PartsOf(r->plan);
-    if (!vplRenderer_HasState(r) || h->parts != (h->passes > 0 ? parts : 0)) {
+    if (!vplRenderer_HasState(r) || (h->parts & ~(uint32_t)VPL_STATE_PLANS) != (h->passes > 0 ? parts : 0)) {
         return vplFail(
             context, VPL_INVALID_ARGUMENT,
             "%s: saved by a render of several passes, and this one is drawn at once: say when it ends, by "
@@ -137,29 +143,31 @@ static vplResult checkRender(const Loading* l)
                : vplFail(context, VPL_PARSE_ERROR, "%s: its counts contradict each other", l->path);
 }
 
-// Plans as the saved render had planned, where a goal or --method auto may have led it to another plan than the first.
+// Plans as the saved render had planned, where a time or --method auto may have led it to another plan than the first.
 static vplResult replan(Loading* l)
 {
     vplRenderer* r = l->renderer;
+    const bool coarse = (l->header.parts & VPL_STATE_COARSE) != 0;
+    const bool follows = r->asked.method == VPL_METHOD_AUTO || (l->header.parts & VPL_STATE_REPLANNED) != 0;
     const char* text = (const char*)l->stream.bytes + VPL_STATE_HEADER_BYTES;
     Lines lines = {text, text + l->header.textBytes};
     vplRenderOptions o = r->asked;
     char line[128];
-    if (r->asked.method != VPL_METHOD_AUTO && !r->coarse) {
+    if (!follows && !r->coarse) {
         return VPL_SUCCESS;
     }
-    while (r->asked.method == VPL_METHOD_AUTO && nextLine(&lines, line)) {
+    while (follows && nextLine(&lines, line)) {
         const size_t named = strcspn(line, "=");
         const bool valued = line[named] == '=';
         line[named] = 0;
         const vplOption* option = vplFindOption(line);
         const bool planned =
             option != NULL && option->users != VPL_USE_ALL && strcmp(line, "spp") != 0 && !vplIsStop(option);
-        if (valued && (planned || strcmp(line, "method") == 0)) {
+        if (valued && (planned || strcmp(line, "method") == 0 || strcmp(line, "pixel-size") == 0)) {
             vplRenderOptions_Set(&o, line, line + named + 1);
         }
     }
-    return vplRenderer_Plan(r, &o, o.output.pixelSize > r->asked.output.pixelSize);
+    return vplRenderer_Plan(r, &o, coarse);
 }
 
 // Makes what the arrays are read into, or draws again what is drawn at once.
@@ -172,7 +180,7 @@ static vplResult openState(vplRenderer* r, uint32_t parts)
         r->runner.run.samples = 0;
         return vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PATHS);
     }
-    if (parts == VPL_STATE_ONCE) {
+    if ((parts & VPL_STATE_ONCE) != 0) {
         return vplRenderer_RunPass(r);
     }
     vplImage_Destroy(r->base);
@@ -224,6 +232,30 @@ static vplResult loadState(Loading* l)
     return VPL_SUCCESS;
 }
 
+// True if the saved picture is coarse, or there is none yet: a render that has a time, or whose caller chose the method, begins anew.
+static bool beginsAnew(const Loading* l)
+{
+    const vplRenderer* r = l->renderer;
+    const bool coarse = l->header.passes == 0 || (l->header.parts & VPL_STATE_COARSE) != 0;
+    return coarse && (isfinite(r->deadline) || r->asked.method != VPL_METHOD_AUTO);
+}
+
+static vplResult load(Loading* l)
+{
+    vplRenderer* r = l->renderer;
+    TRY(checkFile(l));
+    if (beginsAnew(l)) {
+        return checkScene(l);
+    }
+    TRY(replan(l));
+    TRY(checkRender(l));
+    const double deadline = r->deadline;
+    r->deadline = INFINITY; // the saved picture is made again whole, even if the time is over before
+    const vplResult result = loadState(l);
+    r->deadline = deadline;
+    return result;
+}
+
 vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
 {
     REQUIRE(vplRenderer_ContextOf(r), r, path, doneOut);
@@ -239,13 +271,7 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
     context->watch = outer;
     TRY(result);
     l.stream.bytes = (uint8_t*)bytes;
-    result = checkFile(&l);
-    result = result == VPL_SUCCESS ? replan(&l) : result;
-    result = result == VPL_SUCCESS ? checkRender(&l) : result;
-    const double deadline = r->deadline;
-    r->deadline = INFINITY; // the saved picture is made again whole, even if the time is over before
-    result = result == VPL_SUCCESS ? loadState(&l) : result;
-    r->deadline = deadline;
+    result = load(&l);
     vplFree(context, bytes);
     if (result != VPL_SUCCESS) { // the first pass would add to it; it makes all else anew
         vplImage_Destroy(r->direct);
@@ -265,6 +291,7 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
         TRY(result);
     }
     const double bound = r->error.bound;
-    *doneOut = !r->unreviewed && (vplIsComplete(r) || (asked > 0 && bound >= 0 && bound <= asked));
+    *doneOut =
+        !r->unreviewed && !r->coarse && (vplIsComplete(r) || (asked > 0 && bound >= 0 && bound <= asked));
     return VPL_SUCCESS;
 }

@@ -204,6 +204,11 @@ static void chooseShadows(vplPlan* p)
     const bool documented = p->shading == VPL_LIGHTING_DOCUMENTED;
     const bool pair = o->shadow.bias >= 0 || o->shadow.biasSlope >= 0;
     const bool exact = o->shadow.bias == VPL_BIAS_OPTION_EXACT;
+    if (o->method == VPL_METHOD_KELLER && o->stop.budgetMs > 0 &&
+        o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
+        o->lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+        vplDecide(p, "light-shadows", "rays need no maps, which may take longer than the time");
+    }
     // The document's shadows are those of maps, however many there are.
     const double maps = o->method == VPL_METHOD_SSVP ? rsmBytes(p, MOST_RSM) : vplEmitterMapBytes(p);
     p->emitterRays =

@@ -56,13 +56,13 @@ static bool isPerPass(int id)
            id == VPL_STAGE_PATHS;
 }
 
-// Paths are traced in passes of up to 32 per pixel; where a time or an error ends them, the first has two.
+// Paths are traced in passes of up to 32 per pixel; where a time ends them, the first has one, and where an error does two.
 static void sumPaths(vplPlan* p, double before, double all)
 {
     const bool open = vplPathsAreOpen(p);
     const double paths = open ? 32 : p->options.path.samples;
     p->passMs = all * fmin(32, paths) / paths;
-    p->firstMs = before + (open ? all * 2 / paths : p->passMs);
+    p->firstMs = before + (open ? all * (p->options.stop.budgetMs > 0 ? 1 : 2) / paths : p->passMs);
     p->predictedMs = before + all;
 }
 

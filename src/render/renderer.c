@@ -92,6 +92,7 @@ vplResult vplRenderer_Plan(vplRenderer* r, const vplRenderOptions* options, bool
     NextPlan next;
     TRY(makePlan(r, options, &next));
     beginPlan(r, &next, coarse);
+    r->replanned = options != &r->asked;
     return VPL_SUCCESS;
 }
 
@@ -115,6 +116,7 @@ vplResult vplRenderer_Replace(vplRenderer* r, const vplRenderOptions* options, b
     vplPlan_Destroy(worse.plan);
     r->plan = NULL;
     beginPlan(r, &next, coarse);
+    r->replanned = options != &r->asked;
     return VPL_SUCCESS;
 }
 

@@ -50,6 +50,7 @@ struct vplRenderer {
     vplCameraDef view;      // a copy of the caller's, to which asked.view points
     vplPlan* plan;          // under way
     bool coarse;            // its picture only serves until a better plan has one
+    bool replanned;         // its options are not `asked`
     vplImage* base;         // all of the picture; direct light alone where passes add the rest
     // The sums over passes of w x and of w x^2, where x is a pass's picture and w its share of --particles; NULL without
     // passes.

@@ -61,7 +61,7 @@ vplResult vplRenderer_RefreshPatches(vplRenderer* r)
                                                                        : VPL_SUCCESS;
 }
 
-// The picture of the passes, in the size in which it is rendered.
+// The picture of the passes.
 static vplResult resolvePasses(vplRenderer* r, vplImage** imageOut)
 {
     vplRun* run = &r->runner.run;
@@ -81,21 +81,32 @@ static vplResult resolvePasses(vplRenderer* r, vplImage** imageOut)
     return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
 }
 
+// The noise of paths is the whole error, but of pixels that stand for several.
+static vplResult resolvePaths(vplRenderer* r, vplImage** imageOut)
+{
+    TRY(vplResolvePaths(&r->runner.run, imageOut));
+    r->error.noise = r->runner.run.stats->relativeErrorEstimate;
+    const bool all = r->plan->options.output.pixelSize == 1;
+    r->error.total = all ? r->error.noise : -1;
+    r->error.bound = all ? 1.06 * r->error.noise : -1;
+    return VPL_SUCCESS;
+}
+
+// The picture in the size in which it is rendered.
+static vplResult resolveSmall(vplRenderer* r, vplImage** imageOut)
+{
+    return r->plan->options.method == VPL_METHOD_PATH ? resolvePaths(r, imageOut)
+                                                      : resolvePasses(r, imageOut);
+}
+
 vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
 {
-    vplRun* run = &r->runner.run;
     const vplOutputOptions* o = &r->plan->options.output;
-    if (r->plan->options.method == VPL_METHOD_PATH) {
-        TRY(vplResolvePaths(run, imageOut));
-        r->error.noise = r->error.total = run->stats->relativeErrorEstimate;
-        r->error.bound = 1.06 * r->error.noise;
-        return VPL_SUCCESS;
-    }
     if (o->pixelSize == 1) {
-        return resolvePasses(r, imageOut);
+        return resolveSmall(r, imageOut);
     }
     vplImage* small = NULL;
-    vplResult result = resolvePasses(r, &small);
+    vplResult result = resolveSmall(r, &small);
     result = result == VPL_SUCCESS ? vplImage_Enlarge(small, o->width, o->height, imageOut) : result;
     vplImage_Destroy(small);
     return result;

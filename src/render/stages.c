@@ -263,7 +263,7 @@ enum { WORTH_PILOTS = 64 };
 static bool needsLightPaths(const vplPlan* p, char* why)
 {
     const vplRenderOptions* o = &p->options;
-    const double paths = (double)o->output.width * o->output.height * o->path.samples;
+    const double paths = vplCountPixels(&o->output) * o->path.samples;
     const char* problem = o->path.lightVertices >= 0               ? "--light-vertices is given"
                           : o->maxBounces == 0                     ? NOT_REFLECTED
                           : o->output.show == VPL_SHOW_DIRECT      ? NOT_REFLECTED
@@ -274,11 +274,11 @@ static bool needsLightPaths(const vplPlan* p, char* why)
 
 static bool needsPaths(const vplPlan* p, char* why)
 {
-    const vplOutputOptions* o = &p->options.output;
-    return vplPathsAreOpen(p) ? because(why, true, "as many paths as asked for, for each of %dx%d pixels",
-                                        o->width, o->height)
-                              : because(why, true, "%d paths for each of %dx%d pixels",
-                                        p->options.path.samples, o->width, o->height);
+    const int width = vplRenderedWidth(&p->options.output), height = vplRenderedHeight(&p->options.output);
+    return vplPathsAreOpen(p)
+               ? because(why, true, "as many paths as asked for, for each of %dx%d pixels", width, height)
+               : because(why, true, "%d paths for each of %dx%d pixels", p->options.path.samples, width,
+                         height);
 }
 
 // ---- the table

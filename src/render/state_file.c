@@ -61,8 +61,9 @@ bool vplRenderer_HasState(const vplRenderer* r)
         return false;
     }
     const vplRenderOptions* o = &r->asked;
-    const bool goesOn = o->method == VPL_METHOD_AUTO && o->output.show == VPL_SHOW_PICTURE &&
-                        (o->stop.maxError > 0 || o->stop.budgetMs > 0);
+    const bool follows = o->method == VPL_METHOD_AUTO || (r->coarse && r->plan->showsVirtual);
+    const bool goesOn =
+        follows && o->output.show == VPL_SHOW_PICTURE && (o->stop.maxError > 0 || o->stop.budgetMs > 0);
     return goesOn || vplState_PartsOf(r->plan) != VPL_STATE_ONCE;
 }
 

@@ -10,8 +10,17 @@
 
 enum { VPL_STATE_VERSION = 5, VPL_STATE_HEADER_BYTES = 160, VPL_STATE_CHECKSUM_BYTES = 8 };
 
-// Arrays that a file may have; VPL_STATE_ONCE: none, the picture is drawn again.
-enum { VPL_STATE_PASSES = 1, VPL_STATE_PATHS = 2, VPL_STATE_DIRECT = 4, VPL_STATE_ONCE = 8 };
+// Arrays that a file may have; VPL_STATE_ONCE: none, the picture is drawn again. VPL_STATE_REPLANNED: the plan has other options than were
+// asked for, so that it fits into the time; VPL_STATE_COARSE: its picture comes before another.
+enum {
+    VPL_STATE_PASSES = 1,
+    VPL_STATE_PATHS = 2,
+    VPL_STATE_DIRECT = 4,
+    VPL_STATE_ONCE = 8,
+    VPL_STATE_REPLANNED = 16,
+    VPL_STATE_COARSE = 32,
+    VPL_STATE_PLANS = VPL_STATE_REPLANNED | VPL_STATE_COARSE
+};
 
 // The first 8 letters.
 #define VPL_STATE_MAGIC "VPLSTATE"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The first plan of a render that has a time: a coarse one where the picture that was asked for would come late, and what follows it.
 #include "base/clock.h"
+#include "math/scalar.h"
 #include "render/planner/patch_plan.h"
 #include "render/planner/planner.h"
 #include "render/planner/time_plan.h"
@@ -27,11 +28,11 @@ enum { FEW_EMITTERS = 16, COARSE_CHOICES = 4 };
 // The largest side of a square of pixels that are rendered as one in a coarse picture.
 enum { MOST_ENLARGED = 8 };
 
-// Fewer lights and patches by a factor, no smooth edges and small shadow maps.
+// Fewer lights and patches by a factor, one path for each pixel, no smooth edges and small shadow maps.
 static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 {
     *o = r->asked;
-    if (vplScene_GetEmitterCount(r->runner.run.scene) > FEW_EMITTERS &&
+    if (o->method != VPL_METHOD_PATH && vplScene_GetEmitterCount(r->runner.run.scene) > FEW_EMITTERS &&
         (o->lights.emitterSamples == 0 || o->lights.emitterSamples > COARSE_CHOICES)) {
         o->lights.emitterSamples = COARSE_CHOICES;
     }
@@ -50,7 +51,12 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
             o->pipeline.kind == VPL_ACCUMULATE_USUAL ? VPL_ACCUMULATE_INTERLEAVED : o->pipeline.kind;
         o->pipeline.interleave = o->pipeline.interleave < 0 ? 8 : o->pipeline.interleave;
         o->lights.compensation = VPL_COMPENSATION_NONE;
+        if (o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
+            o->lights.shadows = VPL_LIGHT_SHADOWS_RAY; // maps of many emitters are late
+        }
     }
+    o->path.samples = 1;
+    o->path.edgePixels = 0;
     o->ssvp.firstBounce = (int)ceil(share * o->ssvp.firstBounce);
     o->ssvp.secondBounce = (int)ceil(share * o->ssvp.secondBounce);
     o->ssvp.clusters = (int)ceil(share * o->ssvp.clusters);
@@ -98,28 +104,25 @@ static vplResult shrinkCoarse(vplRenderer* r, vplRenderOptions* o)
 vplResult vplRenderer_PlanFirst(vplRenderer* r)
 {
     const vplMethod method = r->asked.method;
-    const bool patches = method == VPL_METHOD_RADIOSITY; // whose plan takes long, too
-    const bool fits = isinf(r->deadline) || method == VPL_METHOD_PATH ||
-                      !vplShowsLight(r->asked.output.show) || r->asked.output.aovs != 0;
+    const bool patches = method == VPL_METHOD_RADIOSITY, // whose plan takes long, too
+        paths = method == VPL_METHOD_PATH;               // whose pictures stay as they become better
+    const bool fits = isinf(r->deadline) || !vplShowsLight(r->asked.output.show) || r->asked.output.aovs != 0;
     vplRenderOptions o;
     int gather;
     if (fits || !patches) {
         TRY(vplRenderer_Plan(r, &r->asked, false));
     }
-    const bool comesSoon = !patches && vplTimeOfFirst(r) < FIRST_SHARE * vplTimeLeft(r);
+    const bool comesSoon = !patches && vplIsInTime(r, paths ? VPL_SURE_SHARE : FIRST_SHARE);
     if (fits || (comesSoon && !suitsPatches(r, INFINITY, &gather))) {
         return VPL_SUCCESS;
     }
     coarsen(r, patches ? 0.02 : 0.0625, &o);
     TRY(vplRenderer_Plan(r, &o, true));
-    if (!patches) {
-        return shrinkCoarse(r, &o);
-    }
-    if (r->plan->patchGroups > 0 && r->asked.radiosity.gather < 0) {
+    if (patches && r->plan->patchGroups > 0 && r->asked.radiosity.gather < 0) {
         o.radiosity.gather = COARSE_GATHER;
-        return vplRenderer_Plan(r, &o, true);
+        TRY(vplRenderer_Plan(r, &o, true));
     }
-    return VPL_SUCCESS;
+    return patches || paths ? enlargePixels(r, MOST_ENLARGED, &o) : shrinkCoarse(r, &o);
 }
 
 // ---- after a coarse picture
@@ -157,19 +160,19 @@ static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
 static vplResult refine(vplRenderer* r)
 {
     vplRenderOptions o = r->asked;
-    bool coarse = false;
-    if (r->plan->options.method == VPL_METHOD_RADIOSITY) {
-        const double spent = vplClockMs() - r->planStart, before = r->plan->options.radiosity.patches;
-        const double patches = before * sqrt(fmax(1, 0.4 * vplTimeLeft(r) / fmax(spent, 1)));
-        coarse = patches < 0.75 * o.radiosity.patches;
-        if (coarse) {
-            coarsen(r, patches / o.radiosity.patches, &o);
-            o.output.antialias = r->asked.output.antialias;
-        }
-    } else {
+    if (r->plan->options.method != VPL_METHOD_RADIOSITY) {
         addEmitters(r, &o);
+        return vplRenderer_Replace(r, &o, false, -1);
     }
-    return vplRenderer_Replace(r, &o, coarse, -1);
+    const double spent = vplClockMs() - r->planStart, before = r->plan->options.radiosity.patches;
+    const double patches = before * sqrt(fmax(1, 0.4 * vplTimeLeft(r) / fmax(spent, 1)));
+    const bool coarse = patches < 0.75 * o.radiosity.patches;
+    if (coarse) {
+        coarsen(r, patches / o.radiosity.patches, &o);
+        o.output.antialias = r->asked.output.antialias;
+    }
+    TRY(vplRenderer_Replace(r, &o, coarse, -1));
+    return coarse ? enlargePixels(r, MOST_ENLARGED, &o) : VPL_SUCCESS;
 }
 
 // A first picture by patches may take SHARE_OF_PATCHES of the time, and the rays that gather their light SHARE_OF_GATHER. Pictures with a gather take
@@ -276,6 +279,24 @@ static vplResult shrinkPixels(vplRenderer* r, const vplRenderOptions* coarse, do
     return *doneOut ? VPL_SUCCESS : vplRenderer_Plan(r, &o, true);
 }
 
+// After a coarse picture of paths the next has pixels as small as fit. If none fit, more paths for each of its pixels follow.
+static vplResult followPaths(vplRenderer* r)
+{
+    vplRenderOptions o = r->plan->options;
+    const double fits = fmax(VPL_SURE_SHARE * vplTimeLeft(r), 0.1);
+    o.output.pixelSize =
+        vplMaxi(r->asked.output.pixelSize, (int)ceil(o.output.pixelSize * sqrt(r->passMs / fits)));
+    if (o.output.pixelSize == r->asked.output.pixelSize) {
+        return vplRenderer_Replace(r, &r->asked, false, -1);
+    }
+    if (o.output.pixelSize < r->plan->options.output.pixelSize) {
+        return vplRenderer_Replace(r, &o, true, -1);
+    }
+    r->plan->options.path.samples = r->asked.path.samples < 0 ? VPL_MAX_SAMPLES : r->asked.path.samples;
+    r->coarse = false;
+    return VPL_SUCCESS;
+}
+
 vplResult vplFollowCoarse(vplRenderer* r, bool* doneOut)
 {
     const vplRenderOptions coarse = r->plan->options;
@@ -283,6 +304,9 @@ vplResult vplFollowCoarse(vplRenderer* r, bool* doneOut)
     const double rays = vplTimeLeft(r) * (double)r->runner.stats.rays /
                         fmax(1, r->passMs); // at the pace of the coarse picture
     int gather;
+    if (coarse.method == VPL_METHOD_PATH) {
+        return followPaths(r);
+    }
     notePace(r);
     if (suitsPatches(r, rays, &gather)) {
         const vplRenderOptions o = firstPatches(r, VPL_FIRST_PATCHES, gather);

@@ -2,6 +2,7 @@
 // Path tracing: each pass adds paths to all pixels. --show chooses a range of bounces.
 #include "reference/light_path.h"
 #include "reference/path_trace.h"
+#include "render/options.h"
 #include "render/runner.h"
 #include "render/stages/make.h"
 
@@ -10,7 +11,7 @@ enum { PATHS_OF_PASS = 4000000 };
 
 int vplPathsOfPass(const vplPlan* plan)
 {
-    const int64_t fit = PATHS_OF_PASS / ((int64_t)plan->options.output.width * plan->options.output.height);
+    const int64_t fit = PATHS_OF_PASS / (int64_t)vplCountPixels(&plan->options.output);
     return fit < 1 ? 1 : fit < VPL_PATHS_PER_PASS ? (int)fit : VPL_PATHS_PER_PASS;
 }
 
@@ -85,6 +86,8 @@ static vplResult createPaths(const vplRun* run, Paths* paths)
     const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
     vplPathDef picture = vplDescribePaths(run, plan->options.output.show),
                direct = vplDescribePaths(run, VPL_SHOW_DIRECT);
+    picture.width = direct.width = vplRenderedWidth(&plan->options.output);
+    picture.height = direct.height = vplRenderedHeight(&plan->options.output);
     picture.firstRow = direct.firstRow = run->firstRow;
     picture.endRow = direct.endRow = run->endRow;
     picture.trees = direct.trees = run->results[VPL_STAGE_EMITTER_TREES];
@@ -130,7 +133,7 @@ vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut)
     const Paths* paths = run->results[VPL_STAGE_PATHS];
     const vplOutputOptions* o = &run->plan->options.output;
     vplPathStats stats;
-    TRY(vplImage_Create(run->context, o->width, o->height, imageOut));
+    TRY(vplImage_Create(run->context, vplRenderedWidth(o), vplRenderedHeight(o), imageOut));
     vplPathTracer_Resolve(paths->picture, *imageOut, &stats);
     run->stats->rays = stats.rays;
     run->stats->errorEstimate = stats.errorEstimate;
