@@ -112,20 +112,35 @@ static void refuse(vplPlan* p)
 
 // Without groups each triangle is at least one patch. Measured on two cores: 0.1 us for a pair of sides of all pairs (room), and 1 to
 // 1.5 ms for a side by links (Sibenik, Sponza); 3 to 4.6 us for a triangle that is in a group (furnished, Conference, Sibenik, Sponza).
+static double leastMsOfPatches(double triangles, bool groups)
+{
+    return groups ? 4e-3 * triangles : triangles <= VPL_ALL_PAIRS ? 1e-4 * triangles * triangles : triangles;
+}
+
+// SSVP draws all triangles into a reflective map of each emitter and, with few clusters, into about four paraboloids (furnished, Sponza:
+// 0.05 us for each on two cores, and 0.15 to 0.2 us for a triangle of the ray tree).
+static double leastMsOfMaps(const vplPlan* p, double triangles)
+{
+    enum { FEWEST_PARABOLOIDS = 4 };
+    return (1.5e-4 + 4e-5 * (p->emitterCount + FEWEST_PARABOLOIDS)) * triangles;
+}
+
 static void refuseTime(const vplRunner* r, vplPlan* p)
 {
-    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    const int triangles = ((const vplGeometry*)r->run.results[VPL_STAGE_GEOMETRY])->triangleCount;
     const vplRadiosityOptions* o = &p->options.radiosity;
-    const bool groups = o->groups != VPL_PATCH_GROUPS_OFF && !vplIsDocumented(o);
-    const double sides = g->triangleCount;
-    const double ms = groups ? 4e-3 * sides : sides <= VPL_ALL_PAIRS ? 1e-4 * sides * sides : sides;
-    if (p->showsPatches && p->options.stop.budgetMs > 0 && ms > p->options.stop.budgetMs) {
-        snprintf(p->problem, sizeof p->problem,
-                 "--budget %g: radiosity makes patches of all %d triangles, which takes about %.2g s at "
-                 "least; use "
-                 "%sanother method or more time",
-                 p->options.stop.budgetMs, g->triangleCount, 1e-3 * ms,
-                 groups ? "" : "--patch-groups auto, ");
+    const bool groups = o->groups != VPL_PATCH_GROUPS_OFF && !vplIsDocumented(o),
+               maps = p->options.method == VPL_METHOD_SSVP && p->showsVirtual;
+    const double ms = p->showsPatches ? leastMsOfPatches(triangles, groups)
+                      : maps          ? leastMsOfMaps(p, triangles)
+                                      : 0;
+    if (p->options.stop.budgetMs > 0 && ms > p->options.stop.budgetMs) {
+        snprintf(
+            p->problem, sizeof p->problem,
+            "--budget %g: %s all %d triangles, which takes about %.2g s at least; use %sanother method or "
+            "more time",
+            p->options.stop.budgetMs, maps ? "SSVP draws its maps of" : "radiosity makes patches of",
+            triangles, 1e-3 * ms, groups || maps ? "" : "--patch-groups auto, ");
     }
 }
 
@@ -237,7 +252,7 @@ static vplResult pose(const vplScene* scene, vplPlan* p)
 
 static vplResult decideAll(vplRunner* r, vplPlan* p)
 {
-    const bool asked = p->options.method == VPL_METHOD_RADIOSITY && !r->choosesMethods;
+    const bool asked = p->options.method != VPL_METHOD_AUTO && !r->choosesMethods;
     p->refusal = VPL_INVALID_ARGUMENT;
     TRY(pose(r->run.scene, p));
     if (p->options.method == VPL_METHOD_AUTO) {

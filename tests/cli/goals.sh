@@ -60,6 +60,8 @@ refuses RadiosityRefusesShortTimes 2 "radiosity makes patches of all" "$vpl" ren
     --budget 10 -o "$out/never.png"
 refuses GroupsOfTrianglesRefuseShortTimes 2 "radiosity makes patches of all 2006 triangles, which takes about 0.008 s" "$vpl" render \
     "$scratch/many.obj" $wee --method radiosity --budget 7 -o "$out/never.png"
+refuses SsvpRefusesShortTimes 2 "SSVP draws its maps of all 2006 triangles, which takes about 0.00062 s" "$vpl" render \
+    "$scratch/many.obj" $wee --method ssvp --budget 0.5 -o "$out/never.png"
 succeeds ThePlannerDoesNotRefuseItsOwnPatches "$vpl" render "$scratch/many.obj" $wee --budget 7 -o "$out/g.pfm"
 "$vpl" render "$closed" $wee --budget 1000 --explain --dry-run >"$scratch/told" 2>&1
 check APlanForATimeSaysThatPatchesMayFollow grep -q "patches follow if there is time" "$scratch/told"
