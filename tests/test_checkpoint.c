@@ -299,3 +299,36 @@ TEST(AStateOfACoarsePictureBeginsAnew, 2)
     unlink(stateFile());
     vplScene_Destroy(scene);
 }
+
+// A plan that was made smaller for want of time is followed, but for what the caller asks otherwise.
+TEST(AStateOfASmallerPlanIsFollowed, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/flat.json");
+    vplRenderOptions o = vplDefaultRenderOptions(), smaller;
+    vplRenderer* r;
+    bool done;
+    o.method = VPL_METHOD_KELLER;
+    o.output.width = o.output.height = 24;
+    o.stop.passes = 3;
+    smaller = o;
+    smaller.output.antialias = 4;
+    smaller.particles.count = 100;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Plan(r, &smaller, false), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Save(r, stateFile()), VPL_SUCCESS);
+    stepToEnd(r);
+    const Seen whole = look(r, NULL);
+    vplRenderer_Destroy(r);
+    Seen first, last;
+    vplRenderStats stats;
+    goOn(scene, &o, &first, &last, &stats);
+    assertSeenSame(&last, &whole);
+    o.maxBounces = 1;
+    assertNotLoaded(scene, &o, VPL_INVALID_ARGUMENT, "--max-bounces");
+    o.maxBounces = vplDefaultRenderOptions().maxBounces;
+    o.method = VPL_METHOD_INSTANT_RADIOSITY;
+    assertNotLoaded(scene, &o, VPL_INVALID_ARGUMENT, "--method keller");
+    unlink(stateFile());
+    vplScene_Destroy(scene);
+}

@@ -143,6 +143,23 @@ static vplResult checkRender(const Loading* l)
                : vplFail(context, VPL_PARSE_ERROR, "%s: its counts contradict each other", l->path);
 }
 
+// Options that a render which chooses its method may have planned, or one that makes its plan fit into the time.
+static bool isPlanned(const vplRenderer* r, const char* name)
+{
+    static const char* const FOR_TIME[] = {"antialias",     "particles",       "compensation",
+                                           "light-shadows", "emitter-samples", "pixel-size"};
+    const vplOption* option = vplFindOption(name);
+    bool planned = false;
+    if (r->asked.method == VPL_METHOD_AUTO && option != NULL) {
+        planned = strcmp(name, "method") == 0 ||
+                  (option->users != VPL_USE_ALL && strcmp(name, "spp") != 0 && !vplIsStop(option));
+    }
+    for (size_t i = 0; i < sizeof FOR_TIME / sizeof *FOR_TIME; i++) {
+        planned = planned || strcmp(name, FOR_TIME[i]) == 0;
+    }
+    return planned;
+}
+
 // Plans as the saved render had planned, where a time or --method auto may have led it to another plan than the first.
 static vplResult replan(Loading* l)
 {
@@ -160,10 +177,7 @@ static vplResult replan(Loading* l)
         const size_t named = strcspn(line, "=");
         const bool valued = line[named] == '=';
         line[named] = 0;
-        const vplOption* option = vplFindOption(line);
-        const bool planned =
-            option != NULL && option->users != VPL_USE_ALL && strcmp(line, "spp") != 0 && !vplIsStop(option);
-        if (valued && (planned || strcmp(line, "method") == 0 || strcmp(line, "pixel-size") == 0)) {
+        if (valued && isPlanned(r, line)) {
             vplRenderOptions_Set(&o, line, line + named + 1);
         }
     }

@@ -51,9 +51,9 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
             o->pipeline.kind == VPL_ACCUMULATE_USUAL ? VPL_ACCUMULATE_INTERLEAVED : o->pipeline.kind;
         o->pipeline.interleave = o->pipeline.interleave < 0 ? 8 : o->pipeline.interleave;
         o->lights.compensation = VPL_COMPENSATION_NONE;
-        if (o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
-            o->lights.shadows = VPL_LIGHT_SHADOWS_RAY; // maps of many emitters are late
-        }
+    }
+    if (o->method == VPL_METHOD_KELLER && o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
+        o->lights.shadows = VPL_LIGHT_SHADOWS_RAY; // as under a budget
     }
     o->path.samples = 1;
     o->path.edgePixels = 0;
