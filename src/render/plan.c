@@ -122,7 +122,7 @@ static double leastMsOfPatches(double triangles, bool groups)
 static double leastMsOfMaps(const vplPlan* p, double triangles)
 {
     enum { FEWEST_PARABOLOIDS = 4 };
-    return (1.5e-4 + 4e-5 * (p->emitterCount + FEWEST_PARABOLOIDS)) * triangles;
+    return (1.5e-4 + 4e-5 * (p->mapEmitterCount + FEWEST_PARABOLOIDS)) * triangles;
 }
 
 static void refuseTime(const vplRunner* r, vplPlan* p)
