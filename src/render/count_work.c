@@ -3,7 +3,6 @@
 // so many of the nearest part; these numbers were fitted with vplUsualSpeeds (README.md, Time).
 #include "render/options.h"
 #include "render/plan.h"
-#include "render/probe.h"
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 #include "render/stages/results.h"
@@ -278,7 +277,7 @@ static double drawnLights(const vplPlan* p)
     return (double)p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
 }
 
-void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PLAN_STAGES])
+void vplCountWork(vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PLAN_STAGES])
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     Scale s = {.plan = p,
@@ -298,7 +297,9 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
     s.pathDepth = 1 + 0.06 * fmax(doublings, 0);
     s.overlap = 1 + 0.1 * fmax(doublings, 0);
     if (p->castsRays || g->triangleCount < 1000) {
-        s.probe = vplProbe_Take(g, &p->view, (float)p->camera.nearPlane);
+        r->probe = r->probed ? r->probe : vplProbe_Take(g, &p->view, (float)p->camera.nearPlane);
+        r->probed = true;
+        s.probe = r->probe;
     }
     for (int i = 0; i < p->stageCount; i++) {
         works[i] = workOf(&s, (vplStageId)p->stages[i].id);

@@ -87,7 +87,7 @@ static vplResult estimateLinks(const vplRunner* r, vplPlanScale* s)
     return vplLinks_EstimateBytes(sides, &def, &s->links.held, &s->links.scratch);
 }
 
-vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
+vplResult vplEstimatePlan(vplRunner* r, const vplMachine* machine, vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     vplPlanScale s = {.plan = p,

@@ -66,7 +66,7 @@ static void sumPaths(vplPlan* p, double before, double all)
     p->predictedMs = before + all;
 }
 
-void vplEstimateTime(const vplRunner* r, const vplMachine* machine, vplPlan* p)
+void vplEstimateTime(vplRunner* r, const vplMachine* machine, vplPlan* p)
 {
     const vplContext* context = r->run.context;
     const vplSpeeds* given = machine != NULL ? machine->speeds : context->speeds;

@@ -104,10 +104,10 @@ bool vplPixelsChooseTriangles(const vplPlan* plan);
 vplSharedBytes vplEstimateFactors(const vplRunner* runner, const vplPlan* plan);
 
 // Fills in counts and bytes: measured for stages that ran already, estimated for the others.
-vplResult vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
+vplResult vplEstimatePlan(vplRunner* runner, const vplMachine* machine, vplPlan* plan);
 
 // Fills in predicted times. A machine without speeds has the usual ones.
-void vplEstimateTime(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
+void vplEstimateTime(vplRunner* runner, const vplMachine* machine, vplPlan* plan);
 
 // Counts of the parts of a render whose times are in vplSpeeds, in its order.
 enum { VPL_SPEED_COUNT = 8 };
@@ -116,7 +116,7 @@ typedef struct vplWork {
 } vplWork;
 
 // The work of each stage of the plan in one pass, in the order of plan->stages.
-void vplCountWork(const vplRunner* runner, const vplPlan* plan, vplWork works[VPL_MAX_PLAN_STAGES]);
+void vplCountWork(vplRunner* runner, const vplPlan* plan, vplWork works[VPL_MAX_PLAN_STAGES]);
 
 // Milliseconds that all workers take for the geometry and its ray tree.
 double vplTimeOfTree(const vplContext* context, int triangles);

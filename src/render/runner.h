@@ -4,6 +4,7 @@
 #ifndef VPL_RENDER_RUNNER_H
 #define VPL_RENDER_RUNNER_H
 
+#include "render/probe.h"
 #include "render/stage.h"
 
 // The last result of a stage.
@@ -31,7 +32,9 @@ typedef struct vplRunner {
     bool plans;     // results serve decisions and are not reported yet
     bool foretells; // the plan is for a reader: its bytes may take some time
     vplLook look;
-    bool looked;         // `look` was taken (planner/look.h)
+    bool looked; // `look` was taken (planner/look.h)
+    vplProbe probe;
+    bool probed;         // `probe` was taken
     bool choosesMethods; // the method was left to the planner, which does not refuse its own plans
     vplProgressFcn* progress;
     void* progressUser;
