@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What follows a coarse picture: the plan that was asked for, or as much of it as the time is enough for.
 #include "base/clock.h"
-#include "math/scalar.h"
 #include "render/planner/coarse_plan.h"
 #include "render/planner/patch_plan.h"
 #include "render/planner/planner.h"
@@ -152,27 +151,32 @@ static void notePace(vplRenderer* r)
     }
 }
 
-// Where nothing else fits into the time, the coarse picture follows with smaller pixels, as small as fit. `spent`: ms that it took.
+// The size of the smallest pixels that fit into the time, if those of `size` took `spent` ms.
+static int smallestPixels(const vplRenderer* r, int size, double spent)
+{
+    const double fits = fmax(VPL_SURE_SHARE * vplTimeLeft(r), 0.1);
+    return (int)fmax(1, ceil(size * sqrt(spent / fits)));
+}
+
+// Where nothing else fits into the time, the coarse picture follows with smaller pixels. `spent`: ms that it took.
 static vplResult shrinkPixels(vplRenderer* r, const vplRenderOptions* coarse, double spent, bool* doneOut)
 {
     vplRenderOptions o = *coarse;
-    const double fits = fmax(VPL_SURE_SHARE * vplTimeLeft(r), 0.1);
-    o.output.pixelSize = (int)fmax(1, ceil(coarse->output.pixelSize * sqrt(spent / fits)));
+    o.output.pixelSize = smallestPixels(r, coarse->output.pixelSize, spent);
     *doneOut = o.output.pixelSize >= coarse->output.pixelSize;
     return *doneOut ? VPL_SUCCESS : vplRenderer_Plan(r, &o, true);
 }
 
-// After a coarse picture of paths the next has pixels as small as fit. If none fit, more paths for each of its pixels follow.
+// After a coarse picture of paths the next has smaller pixels, or if none fit, more paths for each of the same.
 static vplResult followPaths(vplRenderer* r)
 {
     vplRenderOptions o = r->plan->options;
-    const double fits = fmax(VPL_SURE_SHARE * vplTimeLeft(r), 0.1);
-    o.output.pixelSize =
-        vplMaxi(r->asked.output.pixelSize, (int)ceil(o.output.pixelSize * sqrt(r->passMs / fits)));
-    if (o.output.pixelSize == r->asked.output.pixelSize) {
+    const int before = o.output.pixelSize;
+    o.output.pixelSize = smallestPixels(r, before, r->passMs);
+    if (o.output.pixelSize == 1) {
         return vplRenderer_Replace(r, &r->asked, false, -1);
     }
-    if (o.output.pixelSize < r->plan->options.output.pixelSize) {
+    if (o.output.pixelSize < before) {
         return vplRenderer_Replace(r, &o, true, -1);
     }
     r->plan->options.path.samples = r->asked.path.samples < 0 ? VPL_MAX_SAMPLES : r->asked.path.samples;
