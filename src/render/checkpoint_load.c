@@ -143,7 +143,7 @@ static vplResult checkRender(const Loading* l)
                : vplFail(context, VPL_PARSE_ERROR, "%s: its counts contradict each other", l->path);
 }
 
-// Options that a render which chooses its method may have planned, or one that makes its plan fit into the time.
+// True for options whose saved values replace those of the caller: what --method auto chooses, and what is changed to fit a plan into the time.
 static bool isPlanned(const vplRenderer* r, const char* name)
 {
     static const char* const FOR_TIME[] = {"antialias",     "particles",       "compensation",

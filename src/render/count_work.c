@@ -297,8 +297,10 @@ void vplCountWork(vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PLAN_STA
     s.pathDepth = 1 + 0.06 * fmax(doublings, 0);
     s.overlap = 1 + 0.1 * fmax(doublings, 0);
     if (p->castsRays || g->triangleCount < 1000) {
-        r->probe = r->probed ? r->probe : vplProbe_Take(g, &p->view, (float)p->camera.nearPlane);
-        r->probed = true;
+        if (!r->probed) {
+            r->probe = vplProbe_Take(g, &p->view, (float)p->camera.nearPlane);
+            r->probed = true;
+        }
         s.probe = r->probe;
     }
     for (int i = 0; i < p->stageCount; i++) {

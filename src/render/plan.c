@@ -117,7 +117,7 @@ static double leastMsOfPatches(double triangles, bool groups)
     return groups ? 4e-3 * triangles : triangles <= VPL_ALL_PAIRS ? 1e-4 * triangles * triangles : triangles;
 }
 
-// SSVP draws all triangles into a reflective map of each emitter and, with few clusters, into about four paraboloids (furnished, Sponza:
+// SSVP draws all triangles into a reflective map of each emitter and, with few clusters, into about four paraboloid maps (furnished, Sponza:
 // 0.05 us for each on two cores, and 0.15 to 0.2 us for a triangle of the ray tree).
 static double leastMsOfMaps(const vplPlan* p, double triangles)
 {

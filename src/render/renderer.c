@@ -40,6 +40,7 @@ static void forget(vplRenderer* r)
 // A plan that may follow the one under way.
 typedef struct NextPlan {
     vplPlan* plan;
+    bool replanned;     // for other options than were asked for
     double start, rays; // when planning began
 } NextPlan;
 
@@ -56,7 +57,7 @@ static double msOfStages(const vplRenderStats* stats)
 // include the stages that decisions run.
 static vplResult makePlan(vplRenderer* r, const vplRenderOptions* options, NextPlan* next)
 {
-    *next = (NextPlan){NULL, vplClockMs(), (double)r->runner.stats.rays};
+    *next = (NextPlan){NULL, options != &r->asked, vplClockMs(), (double)r->runner.stats.rays};
     const double before = msOfStages(&r->runner.stats);
     vplResult result = vplMakePlan(&r->runner, options, NULL, &next->plan);
     if (result == VPL_SUCCESS && next->plan->problem[0] != 0) {
@@ -79,6 +80,7 @@ static void beginPlan(vplRenderer* r, const NextPlan* next, bool coarse)
     }
     forget(r);
     r->plan = next->plan;
+    r->replanned = next->replanned;
     r->planStart = next->start;
     r->planRays = next->rays;
     r->coarse = coarse;
@@ -92,7 +94,6 @@ vplResult vplRenderer_Plan(vplRenderer* r, const vplRenderOptions* options, bool
     NextPlan next;
     TRY(makePlan(r, options, &next));
     beginPlan(r, &next, coarse);
-    r->replanned = options != &r->asked;
     return VPL_SUCCESS;
 }
 
@@ -116,7 +117,6 @@ vplResult vplRenderer_Replace(vplRenderer* r, const vplRenderOptions* options, b
     vplPlan_Destroy(worse.plan);
     r->plan = NULL;
     beginPlan(r, &next, coarse);
-    r->replanned = options != &r->asked;
     return VPL_SUCCESS;
 }
 

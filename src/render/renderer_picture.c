@@ -81,7 +81,7 @@ static vplResult resolvePasses(vplRenderer* r, vplImage** imageOut)
     return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
 }
 
-// The noise of paths is the whole error, but of pixels that stand for several.
+// Paths have no error but noise. Where a pixel is rendered for several of the picture, the error of interpolating between them is unknown.
 static vplResult resolvePaths(vplRenderer* r, vplImage** imageOut)
 {
     TRY(vplResolvePaths(&r->runner.run, imageOut));

@@ -11,7 +11,7 @@
 enum { VPL_STATE_VERSION = 5, VPL_STATE_HEADER_BYTES = 160, VPL_STATE_CHECKSUM_BYTES = 8 };
 
 // Arrays that a file may have; VPL_STATE_ONCE: none, the picture is drawn again. VPL_STATE_REPLANNED: the plan has other options than were
-// asked for, so that it fits into the time; VPL_STATE_COARSE: its picture comes before another.
+// asked for, so that it fits into the time; VPL_STATE_COARSE: its picture is coarse, and a better plan was to follow.
 enum {
     VPL_STATE_PASSES = 1,
     VPL_STATE_PATHS = 2,

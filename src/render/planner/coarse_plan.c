@@ -46,7 +46,7 @@ void vplCoarsen(const vplRenderer* r, double share, vplRenderOptions* o)
         o->lights.compensation = VPL_COMPENSATION_NONE;
     }
     if (o->method == VPL_METHOD_KELLER && o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
-        o->lights.shadows = VPL_LIGHT_SHADOWS_RAY; // as under a budget
+        o->lights.shadows = VPL_LIGHT_SHADOWS_RAY; // as in plans that have a budget
     }
     o->path.samples = 1;
     o->path.edgePixels = 0;
@@ -96,7 +96,7 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
 {
     const vplMethod method = r->asked.method;
     const bool patches = method == VPL_METHOD_RADIOSITY, // whose plan takes long, too
-        paths = method == VPL_METHOD_PATH;               // whose pictures stay as they become better
+        paths = method == VPL_METHOD_PATH;               // whose first picture is not replaced, but refined
     const bool fits = isinf(r->deadline) || !vplShowsLight(r->asked.output.show) || r->asked.output.aovs != 0;
     vplRenderOptions o;
     int gather;
