@@ -54,7 +54,7 @@ static void* defaultAlloc(void* user, void* memory, size_t oldSize, size_t newSi
     // Huge pages save page faults: `vpl render examples/scenes/room.json --size 1920x1080` takes 21 % less
     // processor time with them.
     const size_t huge = 2u << 20;
-    if (memory == NULL && newSize >= 2 * huge && posix_memalign(&memory, huge, newSize) == 0) {
+    if (memory == NULL && newSize >= huge && posix_memalign(&memory, huge, newSize) == 0) {
         (void)madvise(memory, newSize, MADV_HUGEPAGE); // may fail: 4 KB pages do as well
         return memory;
     }

@@ -45,6 +45,12 @@ static inline vplFour vplFour_Of(float x)
     return (vplFour){x, x, x, x};
 }
 
+// Lane by lane: a where the mask is -1, b where it is 0.
+static inline vplFour vplFour_Choose(vplFourInts mask, vplFour a, vplFour b)
+{
+    return (vplFour)((mask & (vplFourInts)a) | (~mask & (vplFourInts)b));
+}
+
 // x, y, z; the fourth lane is free for other use.
 typedef struct vplBox {
     vplFour low, high;

@@ -176,11 +176,13 @@ static void splitAlong(const vplBvhBuilder* b, const Bins* bins, int count, int 
     }
 }
 
-// Moves the items that go left to the front and returns their number. Has no branch on the side: it would be
-// mispredicted half of the time.
-static int partition(const vplBvhBuilder* b, const vplBuildRange* range, const Binning* binning,
-                     const Split* split)
+// Moves the items that go left to the front, and sets all of the halves but their boxes. Has no branch on the side: it
+// would be mispredicted half of the time.
+static void partition(const vplBvhBuilder* b, const vplBuildRange* range, const Binning* binning,
+                      const Split* split, vplBuildRange halves[2])
 {
+    const vplFour none = vplFour_Of(INFINITY);
+    vplBox centres[2] = {vplBox_Empty(), vplBox_Empty()};
     int left = range->first;
     for (int i = range->first; i < range->first + range->count; i++) {
         const vplBox item = b->items[i];
@@ -189,25 +191,55 @@ static int partition(const vplBvhBuilder* b, const vplBuildRange* range, const B
         b->ids[i] = b->ids[left];
         b->items[left] = item;
         b->ids[left] = id;
-        left += binOf(binning, &item, split->axis) <= split->bin;
+        const bool goesLeft = binOf(binning, &item, split->axis) <= split->bin;
+        left += goesLeft;
+        const vplFourInts isLeft = (vplFourInts){0, 0, 0, 0} - (int32_t)goesLeft;
+        const vplFour centre = vplCentreOf(&item);
+        const vplBox ofLeft = {vplFour_Choose(isLeft, centre, none), vplFour_Choose(isLeft, centre, -none)};
+        const vplBox ofRight = {vplFour_Choose(isLeft, none, centre), vplFour_Choose(isLeft, -none, centre)};
+        centres[0] = vplBox_Join(centres[0], ofLeft);
+        centres[1] = vplBox_Join(centres[1], ofRight);
     }
-    return left - range->first;
+    const int count = left - range->first;
+    halves[0] = (vplBuildRange){.centres = centres[0], .first = range->first, .count = count};
+    halves[1] = (vplBuildRange){.centres = centres[1], .first = left, .count = range->count - count};
+}
+
+static vplBox joinBins(const vplBox* boxes, int count)
+{
+    vplBox all = vplBox_Empty();
+    for (int i = 0; i < count; i++) {
+        all = vplBox_Join(all, boxes[i]);
+    }
+    return all;
+}
+
+// Splits between bins. False where no plane separates centres, or centres of boxes near FLT_MAX overflow.
+static bool splitBetweenBins(const vplBvhBuilder* b, const vplBuildRange* range, vplBuildRange halves[2])
+{
+    const Binning binning = makeBinning(range);
+    Bins bins;
+    fillBins(b, range, &binning, &bins);
+    Split split = {INFINITY, 0, 0};
+    for (int axis = 0; axis < 3; axis++) {
+        splitAlong(b, &bins, binning.count, axis, &split);
+    }
+    if (!(split.cost < INFINITY)) {
+        return false;
+    }
+    partition(b, range, &binning, &split, halves);
+    const vplBox* boxes = bins.boxes[split.axis];
+    halves[0].box = joinBins(boxes, split.bin + 1);
+    halves[1].box = joinBins(boxes + split.bin + 1, binning.count - split.bin - 1);
+    return halves[0].count > 0 && halves[1].count > 0;
 }
 
 void vplSplitRange(const vplBvhBuilder* b, const vplBuildRange* range, int depth, vplBuildRange halvesOut[2])
 {
-    Split split = {INFINITY, 0, 0};
-    int left = range->count / 2;
-    if (range->count > 2 && depth < HALVING_DEPTH) { // two are halved at any plane
-        const Binning binning = makeBinning(range);
-        Bins bins;
-        fillBins(b, range, &binning, &bins);
-        for (int axis = 0; axis < 3; axis++) {
-            splitAlong(b, &bins, binning.count, axis, &split);
-        }
-        const int parted = split.cost < INFINITY ? partition(b, range, &binning, &split) : 0;
-        left = parted > 0 && parted < range->count ? parted : left; // centres of boxes near FLT_MAX overflow
+    const bool tries = range->count > 2 && depth < HALVING_DEPTH; // two are halved at any plane
+    if (!tries || !splitBetweenBins(b, range, halvesOut)) {
+        const int left = range->count / 2;
+        halvesOut[0] = vplMakeRange(b, range->first, left);
+        halvesOut[1] = vplMakeRange(b, range->first + left, range->count - left);
     }
-    halvesOut[0] = vplMakeRange(b, range->first, left);
-    halvesOut[1] = vplMakeRange(b, range->first + left, range->count - left);
 }

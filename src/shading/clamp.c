@@ -23,8 +23,53 @@ bool vplFindVisiblePoint(const vplGeometry* g, const vplView* view, double x, do
 
 // ---- distance of a share
 
-// Enough for two digits of the distance.
-enum { POINTS = 2048, HALVINGS = 40 };
+enum {
+    POINTS = 2048, // enough for two digits of the distance
+    POINTS_PER_TASK = 128,
+    HALVINGS = 40,
+    MANY_TRIANGLES = 50000 // for fewer, workers take longer to wake than the rays
+};
+
+// Rays from visible points to their surroundings.
+typedef struct NearRays {
+    const vplGeometry* geometry;
+    const vplView* view;
+    double squares[POINTS]; // of their lengths; below 0: there is no visible point
+} NearRays;
+
+static double squareOfRay(const NearRays* rays, uint32_t i)
+{
+    const vplGeometry* g = rays->geometry;
+    vplLitPoint p;
+    vplHit hit;
+    if (!vplFindVisiblePoint(g, rays->view, (double)vplHalton(i, 0) * rays->view->width,
+                             (double)vplHalton(i, 1) * rays->view->height, &p)) {
+        return -1;
+    }
+    const vplVec3 way = vplSampleCosineAround(p.plane, vplHalton(i, 2), vplHalton(i, 3));
+    const vplRay ray = vplGeometry_Leave(g, &p.hit, way);
+    return vplGeometry_ClosestHit(g, &ray, &hit) ? (double)hit.t * (double)hit.t : INFINITY;
+}
+
+static void castNearRays(void* data, int task, int worker)
+{
+    (void)worker;
+    NearRays* rays = data;
+    for (int i = task * POINTS_PER_TASK; i < (task + 1) * POINTS_PER_TASK; i++) {
+        rays->squares[i] = squareOfRay(rays, (uint32_t)i + 1);
+    }
+}
+
+// Moves the squares of the rays that were cast to the front and returns their number.
+static int listSquares(double squares[POINTS])
+{
+    int count = 0;
+    for (int i = 0; i < POINTS; i++) {
+        squares[count] = squares[i];
+        count += squares[i] >= 0;
+    }
+    return count;
+}
 
 // The share that the clamp takes from a surface whose surroundings, at these squared distances, are all
 // equally bright.
@@ -42,23 +87,20 @@ vplResult vplFindNearDistance(const vplGeometry* geometry, const vplView* view, 
                               float* distanceOut)
 {
     REQUIRE(CONTEXT_OF(geometry), geometry, view, distanceOut);
-    double squares[POINTS];
-    int count = 0;
-    for (uint32_t i = 1; i <= POINTS; i++) {
-        vplLitPoint p;
-        vplHit hit;
-        if (vplFindVisiblePoint(geometry, view, (double)vplHalton(i, 0) * view->width,
-                                (double)vplHalton(i, 1) * view->height, &p)) {
-            const vplVec3 way = vplSampleCosineAround(p.plane, vplHalton(i, 2), vplHalton(i, 3));
-            const vplRay ray = vplGeometry_Leave(geometry, &p.hit, way);
-            squares[count++] =
-                vplGeometry_ClosestHit(geometry, &ray, &hit) ? (double)hit.t * (double)hit.t : INFINITY;
+    NearRays rays = {geometry, view, {0}};
+    const int tasks = POINTS / POINTS_PER_TASK;
+    if (geometry->triangleCount > MANY_TRIANGLES) {
+        vplParallelFor(geometry->context, tasks, castNearRays, &rays);
+    } else {
+        for (int i = 0; i < tasks; i++) {
+            castNearRays(&rays, i, 0);
         }
     }
+    const int count = listSquares(rays.squares);
     double low = 0, high = (double)vplGeometry_Diagonal(geometry);
     for (int i = 0; i < HALVINGS; i++) {
         const double middle = 0.5 * (low + high);
-        if (shareTaken(squares, count, middle) < share) {
+        if (shareTaken(rays.squares, count, middle) < share) {
             low = middle;
         } else {
             high = middle;
