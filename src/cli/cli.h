@@ -198,6 +198,9 @@ void warnOfDisplay(const Arguments* arguments);
 // exposure by that of this picture, for those that follow. An exit code.
 int preparePicture(const Arguments* arguments, vplImage* image, const char* path, vplWriteOptions* display);
 
+// Prepares a picture and writes it to a file or to standard output; an exit code.
+int writePicture(const Arguments* arguments, vplImage* image, const char* path, vplWriteOptions* display);
+
 // Writes a picture of light by -o, --exposure and --tonemap; an exit code.
 int writeWholePicture(const Arguments* arguments, vplImage* image);
 

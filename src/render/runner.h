@@ -56,6 +56,9 @@ void vplHistory_Close(vplHistory* history);
 // A runner without a plan. It borrows the history.
 vplRunner vplRunner_Begin(const vplScene* scene, vplHistory* history);
 
+// The hash of the values that a stage's key names, with spaces between the names; `build` is how often it was made.
+uint64_t vplFindStageKey(const vplRun* run, const char* key, uint32_t build);
+
 // Runs a stage whose inputs are there, unless its result in the history is still right.
 vplResult vplRunner_RunStage(vplRunner* runner, vplStageId id);
 

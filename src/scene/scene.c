@@ -3,59 +3,7 @@
 #include "scene/texture.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
-
-enum {
-    CAMERA_COOKIE = 0x56504c34,
-    MATERIAL_COOKIE,
-    OBJECT_COOKIE,
-    EMITTER_COOKIE,
-    MESH_COOKIE,
-    TEXTURE_COOKIE
-};
-
-static const double DEGREE = VPL_PI / 180;
-
-vplCameraDef vplDefaultCameraDef(void)
-{
-    return (vplCameraDef){{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40 * DEGREE, 0.1, 100, CAMERA_COOKIE};
-}
-
-vplMaterialDef vplDefaultMaterialDef(void)
-{
-    return (vplMaterialDef){.diffuse = {0.5f, 0.5f, 0.5f},
-                            .texture = -1,
-                            .textureScale = {1, 1},
-                            .alphaTexture = -1,
-                            .opacity = 1,
-                            .cookie = MATERIAL_COOKIE};
-}
-
-vplTextureDef vplDefaultTextureDef(void)
-{
-    return (vplTextureDef){.channels = 3, .cookie = TEXTURE_COOKIE};
-}
-
-vplMeshDef vplDefaultMeshDef(void)
-{
-    return (vplMeshDef){.cookie = MESH_COOKIE};
-}
-
-vplObjectDef vplDefaultObjectDef(void)
-{
-    return (vplObjectDef){NULL, VPL_OBJECT_QUAD, 0, 0, vplMat4_Identity(), OBJECT_COOKIE};
-}
-
-vplEmitterDef vplDefaultEmitterDef(void)
-{
-    return (vplEmitterDef){.type = VPL_EMITTER_POINT,
-                           .direction = {0, -1, 0},
-                           .intensity = {1, 1, 1},
-                           .innerAngle = 20 * DEGREE,
-                           .outerAngle = 30 * DEGREE,
-                           .cookie = EMITTER_COOKIE};
-}
 
 vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
 {
@@ -111,26 +59,6 @@ vplResult vplScene_Deliver(vplScene* scene, vplResult result, vplScene** sceneOu
         vplScene_Destroy(scene);
     }
     return result;
-}
-
-vplResult vplScene_ReportFault(const vplScene* scene, const char* subject, vplFault fault)
-{
-    if (fault.field == NULL) {
-        return VPL_SUCCESS;
-    }
-    char component[16] = "";
-    if (fault.index >= 0) {
-        snprintf(component, sizeof component, "[%d]", fault.index);
-    }
-    return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s%s%s %s", subject, fault.field, component,
-                   fault.text);
-}
-
-static vplResult requireCookie(const vplScene* scene, const char* type, bool present)
-{
-    return present ? VPL_SUCCESS
-                   : vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s was not made by its default function",
-                             type);
 }
 
 // One of the scene's growing arrays.
@@ -194,12 +122,6 @@ void vplScene_GetOrigin(const vplScene* scene, double originOut[3])
     memcpy(originOut, scene->origin, sizeof scene->origin);
 }
 
-vplResult vplScene_CheckCamera(const vplScene* scene, const char* subject, const vplCameraDef* def)
-{
-    TRY(requireCookie(scene, "vplCameraDef", def->cookie == CAMERA_COOKIE));
-    return vplScene_ReportFault(scene, subject, vplCheckCamera(def));
-}
-
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut)
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
@@ -211,8 +133,7 @@ vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* inde
 vplResult vplScene_AddTexture(vplScene* scene, const vplTextureDef* def, int* indexOut)
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
-    TRY(requireCookie(scene, "vplTextureDef", def->cookie == TEXTURE_COOKIE));
-    TRY(vplScene_ReportFault(scene, "vplTextureDef.", vplCheckTexture(def)));
+    TRY(vplScene_CheckTexture(scene, def));
     vplSceneTexture texture = {.def = *def};
     texture.def.texels = NULL;
     texture.def.linear = NULL;
@@ -225,25 +146,10 @@ vplResult vplScene_AddTexture(vplScene* scene, const vplTextureDef* def, int* in
     return result;
 }
 
-// Checks a material that is to be number `index`.
-static vplResult checkMaterial(const vplScene* scene, const vplMaterialDef* def, int index)
-{
-    TRY(requireCookie(scene, "vplMaterialDef", def->cookie == MATERIAL_COOKIE));
-    TRY(vplScene_ReportFault(scene, "vplMaterialDef.", vplCheckMaterial(def, scene->textureCount)));
-    for (int i = 0; def->name != NULL && i < scene->materialCount; i++) {
-        const char* taken = scene->materials[i].name;
-        if (i != index && taken != NULL && strcmp(taken, def->name) == 0) {
-            return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                           "vplMaterialDef.name \"%s\" is taken, must be unique", def->name);
-        }
-    }
-    return VPL_SUCCESS;
-}
-
 vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut)
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
-    TRY(checkMaterial(scene, def, scene->materialCount));
+    TRY(vplScene_CheckMaterial(scene, def, scene->materialCount));
     vplMaterialDef copy = *def;
     TRY(copyName(scene, &copy.name));
     return vplScene_AdoptMaterial(scene, &copy, indexOut);
@@ -276,8 +182,7 @@ static void* copyArray(vplArena* arena, const void* from, int count, size_t size
 vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut)
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
-    TRY(requireCookie(scene, "vplMeshDef", def->cookie == MESH_COOKIE));
-    TRY(vplScene_ReportFault(scene, "vplMeshDef.", vplCheckMesh(def, scene->materialCount)));
+    TRY(vplScene_CheckMesh(scene, def));
     vplArena* arena = vplArena_Create(scene->context);
     vplMeshDef copy = *def;
     copy.positions = copyArray(arena, def->positions, def->vertexCount, sizeof *def->positions);
@@ -289,32 +194,10 @@ vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut
     return vplScene_AdoptMesh(scene, &copy, arena, indexOut);
 }
 
-vplResult vplScene_CheckObjectMaterial(const vplScene* scene, vplObjectType type, int mesh, int material)
-{
-    const bool own = type == VPL_OBJECT_MESH && material == -1 && scene->meshes[mesh].materials != NULL;
-    return own || (material >= 0 && material < scene->materialCount)
-               ? VPL_SUCCESS
-               : vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                         "vplObjectDef.material is %d, must be one of the scene's %d materials", material,
-                         scene->materialCount);
-}
-
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut)
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
-    TRY(requireCookie(scene, "vplObjectDef", def->cookie == OBJECT_COOKIE));
-    TRY(vplScene_ReportFault(scene, "vplObjectDef.", vplCheckTransform(&def->transform)));
-    if (def->type != VPL_OBJECT_QUAD && def->type != VPL_OBJECT_BOX && def->type != VPL_OBJECT_MESH) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplObjectDef.type is %d, must be a vplObjectType", (int)def->type);
-    }
-    bool mesh = def->type == VPL_OBJECT_MESH;
-    if (mesh && (def->mesh < 0 || def->mesh >= scene->meshCount)) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplObjectDef.mesh is %d, must be one of the scene's %d meshes", def->mesh,
-                       scene->meshCount);
-    }
-    TRY(vplScene_CheckObjectMaterial(scene, def->type, def->mesh, def->material));
+    TRY(vplScene_CheckObject(scene, def));
     vplObjectDef copy = *def;
     TRY(copyName(scene, &copy.name));
     return append(scene, LIST(scene, object, objects), &copy, indexOut);
@@ -324,20 +207,11 @@ vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* in
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
     const vplEmitter emitter = {.def = *def};
-    TRY(requireCookie(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE));
-    TRY(vplScene_ReportFault(scene, "vplEmitterDef.", vplCheckEmitter(def)));
+    TRY(vplScene_CheckEmitter(scene, def));
     return append(scene, LIST(scene, emitter, emitters), &emitter, indexOut);
 }
 
 // ---- changes
-
-vplResult vplScene_CheckIndex(const vplScene* scene, const char* what, int index, int count)
-{
-    return index >= 0 && index < count
-               ? VPL_SUCCESS
-               : vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s %d does not exist, the scene has %d", what,
-                         index, count);
-}
 
 vplResult vplScene_SetCamera(vplScene* scene, int index, const vplCameraDef* def)
 {
@@ -354,8 +228,7 @@ vplResult vplScene_SetEmitter(vplScene* scene, int index, const vplEmitterDef* d
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(vplScene_CheckIndex(scene, "emitter", index, scene->emitterCount));
-    TRY(requireCookie(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE));
-    TRY(vplScene_ReportFault(scene, "vplEmitterDef.", vplCheckEmitter(def)));
+    TRY(vplScene_CheckEmitter(scene, def));
     TRY(vplScene_SetEmitterPath(scene, index, NULL, 0));
     scene->emitters[index].def = *def;
     vplScene_Touch(scene, false);
@@ -366,7 +239,7 @@ vplResult vplScene_SetMaterial(vplScene* scene, int index, const vplMaterialDef*
 {
     REQUIRE(CONTEXT_OF(scene), scene, def);
     TRY(vplScene_CheckIndex(scene, "material", index, scene->materialCount));
-    TRY(checkMaterial(scene, def, index));
+    TRY(vplScene_CheckMaterial(scene, def, index));
     vplMaterialDef copy = *def;
     const char* before = scene->materials[index].name;
     if (before != NULL && copy.name != NULL && strcmp(before, copy.name) == 0) {

@@ -64,9 +64,6 @@ void vplScene_Touch(vplScene* scene, bool surfaces);
 // Forgets the path of an object, if it has one. It stays where it is.
 void vplScene_DropMover(vplScene* scene, int object);
 
-// Fails unless an object of this type and mesh may have the material.
-vplResult vplScene_CheckObjectMaterial(const vplScene* scene, vplObjectType type, int mesh, int material);
-
 // Adds a mesh without checking it. Its arrays are in `arena`, which becomes part of the scene's; on failure
 // it is destroyed. Fails, too, if an allocation of `arena` failed.
 vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* arena, int* indexOut);
@@ -108,6 +105,16 @@ vplFault vplCheckEnvironment(const vplEnvironmentDef* def);
 
 // Checks a camera def and its cookie; the message begins with `subject`.
 vplResult vplScene_CheckCamera(const vplScene* scene, const char* subject, const vplCameraDef* def);
+
+// Check a def and its cookie; a material is to be number `index`.
+vplResult vplScene_CheckTexture(const vplScene* scene, const vplTextureDef* def);
+vplResult vplScene_CheckMaterial(const vplScene* scene, const vplMaterialDef* def, int index);
+vplResult vplScene_CheckMesh(const vplScene* scene, const vplMeshDef* def);
+vplResult vplScene_CheckObject(const vplScene* scene, const vplObjectDef* def);
+vplResult vplScene_CheckEmitter(const vplScene* scene, const vplEmitterDef* def);
+
+// Fails unless an object of this type and mesh may have the material.
+vplResult vplScene_CheckObjectMaterial(const vplScene* scene, vplObjectType type, int mesh, int material);
 
 // Logs a fault, if there is one, as "<subject><field> <text>"; fails if there is one.
 vplResult vplScene_ReportFault(const vplScene* scene, const char* subject, vplFault fault);
