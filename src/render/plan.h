@@ -67,6 +67,13 @@ vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 // True for options of Hemgren's document, which knows neither cuts nor groups, and keeps all sides.
 bool vplIsDocumented(const vplRadiosityOptions* options);
 
+// Write into the plan's `problem` why it cannot be rendered, if that is so: options that contradict each other or the scene, and the
+// light of emitters that documented lighting does not know; stages that must be made whole and take longer than the budget; more bytes
+// than are allowed.
+void vplRefuseOptions(vplPlan* plan);
+void vplRefuseTime(const vplRunner* runner, vplPlan* plan);
+void vplRefuseMemory(const vplContext* context, vplPlan* plan);
+
 // Resolves the options of radiosity. Makes the patches and their sides where these are known before the render.
 vplResult vplDecidePatches(vplRunner* runner, vplPlan* plan);
 

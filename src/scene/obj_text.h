@@ -19,6 +19,11 @@ typedef struct vplWord {
     const char* end;
 } vplWord;
 
+static inline bool vplIsBlank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\v';
+}
+
 // Reads a file. Afterwards every line ends with '\n'. A '\v' replaces the end of a line that a backslash
 // continues: it is a blank to readers, but counts as a line. A NUL byte is an error.
 vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut);
