@@ -236,7 +236,7 @@ TEST(LittleTimeMakesPixelsLarger, 2)
     assert_int_equal(vplContext_SetSpeeds(context, NULL), VPL_SUCCESS);
 }
 
-// The methods that callers choose begin with large pixels, too.
+// The methods that callers choose begin with large pixels, too, and SSVP without the bounces behind the second.
 TEST(AllMethodsBeginWithLargePixels, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/flat.json");
@@ -247,7 +247,9 @@ TEST(AllMethodsBeginWithLargePixels, 2)
         vplRenderer_Destroy(r);
         assert_int_equal(firstPixelSize(context, scene, method, 1e10, &r), 8);
         assert_true(r->coarse && r->plan->options.method == method);
+        assert_true(method != VPL_METHOD_SSVP || r->plan->options.maxBounces == 2);
         assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS); // was quicker than foreseen
+        assert_true(method != VPL_METHOD_SSVP || r->plan->options.maxBounces > 2);
         assert_false(done);
         assert_int_equal(r->plan->options.output.pixelSize, 1);
         vplRenderer_Destroy(r);

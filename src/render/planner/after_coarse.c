@@ -162,6 +162,7 @@ static int smallestPixels(const vplRenderer* r, int size, double spent)
 static vplResult shrinkPixels(vplRenderer* r, const vplRenderOptions* coarse, double spent, bool* doneOut)
 {
     vplRenderOptions o = *coarse;
+    o.maxBounces = r->asked.maxBounces; // SSVP may have left some out
     o.output.pixelSize = smallestPixels(r, coarse->output.pixelSize, spent);
     *doneOut = o.output.pixelSize >= coarse->output.pixelSize;
     return *doneOut ? VPL_SUCCESS : vplRenderer_Plan(r, &o, true);

@@ -74,6 +74,15 @@ vplResult vplEnlargePixels(vplRenderer* r, int most, vplRenderOptions* o)
     return VPL_SUCCESS;
 }
 
+// SSVP's first two bounces, without maps that light of the third needs.
+static vplResult leaveBouncesOut(vplRenderer* r, vplRenderOptions* o)
+{
+    o->maxBounces = 2;
+    TRY(vplRenderer_Plan(r, o, true));
+    vplDecide(r->plan, "max-bounces", "a coarse picture with more bounces would come too late");
+    return VPL_SUCCESS;
+}
+
 // Makes a coarse plan of virtual lights smaller until it is foreseen to come in time. Four choices for one of 2x2 pixels have less noise than one
 // for each pixel.
 static vplResult shrinkCoarse(vplRenderer* r, vplRenderOptions* o)
@@ -81,6 +90,9 @@ static vplResult shrinkCoarse(vplRenderer* r, vplRenderOptions* o)
     if (o->particles.count > VERY_FEW && !vplIsInTime(r, VPL_SURE_SHARE)) {
         o->particles.count = VERY_FEW;
         TRY(vplRenderer_Plan(r, o, true));
+    }
+    if (o->method == VPL_METHOD_SSVP && o->maxBounces < 0 && !vplIsInTime(r, VPL_SURE_SHARE)) {
+        TRY(leaveBouncesOut(r, o));
     }
     if (o->lights.emitterSamples > 1) {
         TRY(vplEnlargePixels(r, 2, o));
