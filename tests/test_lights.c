@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of particle counts and the particle simulation. Covers extremes X029 to X048.
+// Tests of particle counts and the particle simulation; test_totals.c has whole simulations by the hundred. Covers
+// extremes X029 to X048.
 #include "shapes.h"
 
 #include "lights/particles.h"
@@ -24,24 +25,6 @@ TEST(EveryCountOfTheTableIsTheDecimalOne, 1)
             fail_msg("row %d: floor(%s^%d %d) is %d, wanted %s", row, cell(&t, row, "rho"), k, n, count,
                      cell(&t, row, "dec"));
         }
-    }
-    freeTable(&t);
-}
-
-TEST(EveryTotalOfTheTable, 1)
-{
-    Table t = loadTable("counts_totals.csv");
-    for (int row = 0; row < t.rows; row++) {
-        const vplParticlePass pass = {0, (int)number(&t, row, "N"), number(&t, row, "rho")};
-        vplStepTotals totals;
-        vplResult result = vplCountParticles(context, &pass, NULL, 0, &totals);
-        if (number(&t, row, "total_sum_k>=0") > VPL_MAX_LIGHTS) {
-            assert_int_equal(result, VPL_LIMIT);
-            continue;
-        }
-        assert_int_equal(result, VPL_SUCCESS);
-        assert_int_equal(totals.stepCount, (int)number(&t, row, "steps"));
-        assert_int_equal(totals.lightCount, (int64_t)number(&t, row, "total_sum_k>=0"));
     }
     freeTable(&t);
 }
@@ -176,40 +159,6 @@ static vplLightSet* simulate(const vplGeometry* g, vplParticleDef def)
     vplLightSet* set = NULL;
     assert_int_equal(vplSimulateParticles(g, &emitter, 1, &def, &set), VPL_SUCCESS);
     return set;
-}
-
-// Rays and tests of objects, in a closed cube beside a seventh object. Draw calls are tested in test_render.c;
-// the other columns are totals by rules that are not ours.
-TEST(RaysOfTheTotalsAreThoseOfTheTable, 1)
-{
-    Table t = loadTable("counts_totals.csv");
-    vplScene* scene = closedCubeScene(context, 0.5f, 0);
-    addThing(scene, VPL_OBJECT_QUAD, 0, (vplVec3){50, 0, 0}, 0, 0, (vplVec3){1, 1, 1});
-    vplGeometry* cube = buildGeometry(scene);
-    int compared = 0;
-    for (int row = 0; row < t.rows; row++) {
-        const int total = (int)number(&t, row, "total_sum_k>=0"),
-                  rays = (int)number(&t, row, "ray_object_tests_B7");
-        if (total > 5000) {
-            continue; // counts alone: EveryTotalOfTheTable
-        }
-        for (int keller = 0; keller < 2; keller++) {
-            vplParticleDef def = vplDefaultParticleDef();
-            def.particleCount = (int)number(&t, row, "N");
-            def.reflectivity = number(&t, row, "rho");
-            def.start = keller ? VPL_START_EMITTER : VPL_START_FIRST_HIT;
-            vplLightSet* set = simulate(cube, def);
-            assert_int_equal(set->lightCount, total);
-            assert_int_equal(set->rays, keller ? (int)number(&t, row, "keller_rays_sum_k>=1") : total);
-            assert_int_equal(set->rayObjectTests, keller ? 7 * set->rays : rays);
-            assert_true((double)set->rayObjectTests <= number(&t, row, "bound_BN/(1-rho)_B7"));
-            vplLightSet_Destroy(set);
-        }
-        compared++;
-    }
-    assert_true(compared > 200);
-    vplGeometry_Destroy(cube);
-    freeTable(&t);
 }
 
 TEST(TenParticlesAtHalfMake18Lights, 1)
