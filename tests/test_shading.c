@@ -1,123 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Tests of the light kernel, direct light and sums against exact answers. Covers extremes X085 to X092.
+// Tests of direct light and of sums of lights against exact answers; test_kernel_values.c has single lights. Covers
+// extremes X091, X092 and X112.
+#include "kernel_points.h"
 #include "scenes.h"
 
 #include "math/vec.h"
-#include "shading/light_block.h"
 #include "shading/shading.h"
 
 #include <float.h>
 #include <stdlib.h>
 
-static void fillSurface(vplSurface* s, vplVec3 p, vplVec3 n)
+static double irradiance(const vplContext* context, vplLighting lighting, float minDistance, vplVec3 p,
+                         vplVec3 n, const vplShadeLight* lights, int count)
 {
-    for (int l = 0; l < VPL_LANES; l++) {
-        s->px[l] = p.x;
-        s->py[l] = p.y;
-        s->pz[l] = p.z;
-        s->nx[l] = n.x;
-        s->ny[l] = n.y;
-        s->nz[l] = n.z;
-    }
-}
-
-// Returns the red irradiance of lights[0 .. count) at one point.
-static double irradiance(vplContext* context, vplLighting lighting, float minDistance, vplVec3 p, vplVec3 n,
-                         const vplShadeLight* lights, int count)
-{
-    vplSurface surface;
-    float e[3][VPL_LANES] = {{0}};
-    fillSurface(&surface, p, n);
-    vplAccumulateLights(context, (vplLightFormula){lighting, minDistance}, &surface, lights, count, e);
-    for (int l = 1; l < VPL_LANES; l++) {
-        assert_true(e[0][l] == e[0][0]);
-    }
-    return (double)e[0][0];
-}
-
-static vplShadeLight lightAt(vplVec3 p, vplVec3 n, float colour)
-{
-    return (vplShadeLight){p.x, p.y, p.z, n.x, n.y, n.z, colour, colour, colour};
-}
-
-TEST(EveryKernelValueOfTheTable, 1)
-{
-    Table t = loadTable("vpl_kernel.csv");
-    int inside = 0, outside = 0;
-    for (int row = 0; row < t.rows; row++) {
-        const char* category = cell(&t, row, "cat");
-        vplVec3 x = vectorOf(&t, row, "x_"), nx = vplNormalize(vectorOf(&t, row, "nx_"));
-        vplShadeLight light = lightAt(vectorOf(&t, row, "y_"), vplNormalize(vectorOf(&t, row, "ny_")), 1);
-        double minDistance = sqrt(number(&t, row, "c"));
-        double bounded = irradiance(context, VPL_LIGHTING_PHYSICAL, (float)minDistance, x, nx, &light, 1);
-        double open = irradiance(context, VPL_LIGHTING_PHYSICAL, 0, x, nx, &light, 1);
-        double documented = irradiance(context, VPL_LIGHTING_DOCUMENTED, 0, x, nx, &light, 1);
-        double wanted = number(&t, row, "G"), wantedBounded = number(&t, row, "G_clamped_r2");
-        assert_true(isfinite(bounded) && bounded >= 0 && isfinite(documented));
-        // The documented range requires that float can hold d^2. Beyond it, the result is between 0 and the
-        // bound (X087, X088).
-        double r2 = number(&t, row, "r2");
-        const double dx = (double)light.px - (double)x.x, dy = (double)light.py - (double)x.y,
-                     dz = (double)light.pz - (double)x.z;
-        assertNear(dx * dx + dy * dy + dz * dz, r2, 1e-12 * r2, "r2", row);
-        assertNear(fmin(wanted, number(&t, row, "Gmax")), number(&t, row, "G_clamped_Gmax"), 1e-12 * wanted,
-                   "Gmax", row); // a rule that the library does not offer: it bounds r^2
-        if (r2 != 0 && (r2 < FLT_MIN || r2 > FLT_MAX)) {
-            assert_true(bounded <= wantedBounded * (1 + 1e-6) && bounded >= 0);
-            outside++;
-            continue;
-        }
-        // The cosines: the documented kernel is that at x, and with both sides exchanged that at y.
-        const vplShadeLight back = lightAt(x, nx, 1);
-        const vplVec3 y = {light.px, light.py, light.pz}, ny = {light.nx, light.ny, light.nz};
-        const double cosY = irradiance(context, VPL_LIGHTING_DOCUMENTED, 0, y, ny, &back, 1);
-        assertNear(documented, isEmpty(&t, row, "cos_x") ? 0 : fmax(number(&t, row, "cos_x"), 0), 4e-7,
-                   "cos_x", row);
-        assertNear(cosY, isEmpty(&t, row, "cos_y") ? 0 : fmax(number(&t, row, "cos_y"), 0), 4e-7, "cos_y",
-                   row);
-        inside++;
-        // Each cosine carries the rounding error of a dot product of unit vectors, 3e-7 absolute.
-        double slack = 1e-6, scale = r2 > 0 ? 3e-7 / r2 : 0;
-        assertNear(open, wanted, slack * wanted + scale, category, row);
-        assertNear(bounded, wantedBounded, slack * wantedBounded + fmin(scale, 3e-7 / number(&t, row, "c")),
-                   category, row);
-        assertNear(documented, number(&t, row, "documented_kernel"), 4e-7, category, row);
-    }
-    assert_int_equal(inside + outside, t.rows);
-    assert_int_equal(outside, 2);
-    freeTable(&t);
-}
-
-// A plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), integrated over
-// 20,000 rings.
-TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
-{
-    Table t = loadTable("vpl_clamp_plane.csv");
-    enum { RINGS = 20000 };
-    vplShadeLight* rings = malloc(RINGS * sizeof *rings);
-    for (int row = 0; row < t.rows; row++) {
-        double h = number(&t, row, "h"), c = number(&t, row, "c"), sum = 0;
-        // The rings go from 1e-3 to 1e3 times the larger of h and sqrt(c), evenly in the logarithm, with a
-        // disc inside.
-        double unit = fmax(h, sqrt(c)), inner = 1e-3 * fmin(h, sqrt(c)),
-               ratio = pow(1e3 * unit / inner, 1.0 / RINGS);
-        double r = inner;
-        for (int i = 0; i < RINGS; i++) {
-            double next = r * ratio, middle = sqrt(0.5 * (r * r + next * next));
-            double area = VPL_PI * (next * next - r * r);
-            rings[i] = lightAt(vplVec((float)middle, 0, 0), vplVec(0, 1, 0), (float)area); // L = 1
-            r = next;
-        }
-        for (int i = 0; i < RINGS; i += VPL_LIGHT_GROUP) {
-            int count = RINGS - i < VPL_LIGHT_GROUP ? RINGS - i : VPL_LIGHT_GROUP;
-            sum += irradiance(context, VPL_LIGHTING_PHYSICAL, (float)sqrt(c), vplVec(0, (float)h, 0),
-                              vplVec(0, -1, 0), rings + i, count);
-        }
-        // The rings end at 1000 units and miss at most (h / (1000 unit))^2.
-        assertNear(sum / VPL_PI, number(&t, row, "fraction_kept_r2clamp"), 2e-4, "fraction kept", row);
-    }
-    free(rings);
-    freeTable(&t);
+    return irradianceAt(context, (vplLightFormula){lighting, minDistance}, p, n, lights, count);
 }
 
 // Returns the first directions of the tables: spherical Fibonacci points about y.
