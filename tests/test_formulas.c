@@ -66,8 +66,9 @@ TEST(PcfFormulasGiveTheTableToTheLastDigits, 1)
     freeTable(&t);
 }
 
-// The table's grids beside an edge: samples beyond the edge see something at half the distance.
-TEST(PcfFormulaCountsTheGridsOfTheTable, 1)
+// The table's grids beside an edge: samples beyond the edge see something at half the distance. What they expect is the
+// share of the square.
+TEST(PcfFormulasCountTheGridsOfTheTable, 1)
 {
     (void)context;
     Table t = loadTable("pcf_grid.csv");
@@ -78,7 +79,11 @@ TEST(PcfFormulaCountsTheGridsOfTheTable, 1)
         for (int i = 0; i < samples; i++) {
             stored[i] = (2.0 * (i / side) + 1) / side - 1 > x ? 0.5 : INFINITY;
         }
-        assertNear(vplFormula_Pcf(1, 0.01, stored, samples), number(&t, row, "factor"), 0, "factor", row);
+        const double factor = vplFormula_Pcf(1, 0.01, stored, samples);
+        assertNear(factor, number(&t, row, "factor"), 0, "factor", row);
+        assertNear(factor * samples, number(&t, row, "shadowed"), 0, "shadowed", row);
+        assertNear(vplFormula_PcfAtEdge(VPL_PCF_SQUARE, x), number(&t, row, "expectation"), 4e-16,
+                   "expectation", row);
     }
     assert_int_equal(t.rows, 42);
     freeTable(&t);

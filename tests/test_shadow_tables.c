@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of bias and PCF against tables of exact answers. Covers extremes X061 to X068.
+// Tests of shadow verdicts, light leaks and PCF against tables of exact answers; test_bias_tables.c has the bias. Covers
+// extremes X061, X062, X065 and X070.
 #include "shadow_maps.h"
 
 #include "math/vec.h"
@@ -21,192 +22,6 @@ TEST(EveryShadowVerdictOfTheTable, 1)
                    number(&t, row, "bias_clamped"), 2e-8, "bias", row);
     }
     freeTable(&t);
-}
-
-// A float near 1 is off by 2^-24; the exact bias is 1 less a quotient of two such, and has 2^-20 added to it.
-#define BIAS_SLACK 3e-7
-#define BIAS_ADDED 0x1p-20
-
-// r (1 - cos t / cos(t - a)): the bias of a plane at angle t whose samples are off by a; r (1 - cos t) where a
-// exceeds t.
-static double exactBias(double r, double t, double a)
-{
-    return r * (1 - cos(t) / cos(fmax(t - a, 0)));
-}
-
-// At 0 degrees the table's bias is negative, and ours 0: the next sample is no nearer.
-TEST(ExactBiasIsThatOfTheTable, 1)
-{
-    Table t = loadTable("bias_angle.csv");
-    FlatMap flat;
-    makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
-    vplShadow shadow = exactShadow(&flat.map, 1, 0);
-    int facing = 0;
-    for (int row = 0; row < t.rows; row++) {
-        const double alpha = number(&t, row, "alpha"), cosine = number(&t, row, "n_dot_l"),
-                     theta = number(&t, row, "theta_deg") * VPL_PI / 180,
-                     wanted = number(&t, row, "bias_over_r_exact"),
-                     first = number(&t, row, "bias_over_r_first_order_alpha_tan");
-        assertNear(cosine, cos(theta), 1e-15, "n.l", row);
-        assertNear(first, alpha * tan(theta), 1e-12, "first order", row);
-        shadow.texelTangent = (float)tan(alpha);
-        const double bias = (double)vplShadow_Bias(&shadow, 3, (float)cosine) / 3 - BIAS_ADDED;
-        assertNear(bias, fmax(wanted, 0), BIAS_SLACK, "bias", row);
-        if (wanted < 0) {
-            assert_true(theta == 0 && isEmpty(&t, row, "needed_bdmax_over_r_if_bs0"));
-            assert_true(isEmpty(&t, row, "same_first_order"));
-            facing++;
-            continue;
-        }
-        // Both dynamic biases give theirs at this angle.
-        const char* const columns[2] = {"needed_bdmax_over_r_if_bs0", "same_first_order"};
-        for (int k = 0; k < 2; k++) {
-            const double dynamic = number(&t, row, columns[k]);
-            const vplShadow pair = pairShadow(&flat.map, 0, (float)dynamic);
-            assertNear((double)vplShadow_Bias(&pair, 3, (float)cosine), k == 0 ? wanted : first,
-                       1e-7 * dynamic, columns[k], row);
-        }
-    }
-    assert_int_equal(t.rows, 45);
-    assert_int_equal(facing, 2);
-    freeTable(&t);
-}
-
-// A point of the texel of a row of bias_texel.csv: (x, y) in [0, 1]^2 from its upper left corner.
-static vplVec3 inTexel(const Table* t, int row, double x, double y)
-{
-    static const char* const faces[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
-    int face = 0;
-    while (strcmp(faces[face], cell(t, row, "face")) != 0) {
-        face++;
-    }
-    const vplCubeFrame f = vplCube_GetFrame(face);
-    const double size = number(t, row, "R"), u = 2 * (number(t, row, "i") + x) / size - 1,
-                 v = 1 - 2 * (number(t, row, "j") + y) / size;
-    return vplNormalize(vplAdd(f.forward, vplAdd(vplScale((float)u, f.right), vplScale((float)v, f.up))));
-}
-
-// The cosine between a direction and the plane's normal, and the distance at which it meets the plane.
-static double cosineTo(const Table* t, int row, vplVec3 d)
-{
-    return -(number(t, row, "nx") * (double)d.x + number(t, row, "ny") * (double)d.y +
-             number(t, row, "nz") * (double)d.z);
-}
-
-// bias_texel.csv compares a fragment at the worst corner of a texel with the distance at the texel's centre.
-// Ours must be the table's closed form for the angle between both, and enough everywhere in the texel for the
-// largest angle of the map. Where a corner lies beyond the plane's horizon (X067) no finite bias is enough
-// for it, but for all points of the texel this side of it.
-TEST(ExactBiasIsThatOfEveryTexelOfTheTableAndEnough, 1)
-{
-    Table t = loadTable("bias_texel.csv");
-    FlatMap flat;
-    makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
-    int finite = 0, horizon = 0, points = 0;
-    for (int row = 0; row < t.rows; row++) {
-        flat.map.size = (int)number(&t, row, "R");
-        vplShadow shadow = exactShadow(&flat.map, 1, 0);
-        const double h = number(&t, row, "h"), centre = number(&t, row, "r_centre"),
-                     cosine = cosineTo(&t, row, inTexel(&t, row, 0.5, 0.5));
-        assertNear(h / cosine / centre, 1, 2e-7 / cosine, "r_centre", row);
-        assertNear(acos(h / centre), number(&t, row, "theta_centre"), 1e-12, "theta_centre", row);
-        double farthest = 0, nearest = 1;
-        for (int i = 0; i <= 16; i++) {
-            for (int j = 0; j <= 16; j++) {
-                const vplVec3 d = inTexel(&t, row, i / 16.0, j / 16.0);
-                const double c = cosineTo(&t, row, d), r = h / c;
-                nearest = fmin(nearest, c);
-                if (c > 1e-4) {
-                    assert_true((double)vplShadow_Bias(&shadow, (float)r, (float)c) >= r - centre);
-                    farthest = fmax(farthest, r);
-                    points++;
-                }
-            }
-        }
-        if (strcmp(cell(&t, row, "r_max_corner"), "inf") == 0) {
-            assert_true(nearest < 1e-6 && isinf(number(&t, row, "bias_exact")));
-            assert_true(isEmpty(&t, row, "bias_closed_A") && isEmpty(&t, row, "alpha_corner"));
-            horizon++;
-            continue;
-        }
-        const double r = number(&t, row, "r_max_corner"), closed = number(&t, row, "bias_closed_A"),
-                     alpha = number(&t, row, "alpha_corner");
-        assertNear(farthest / r, 1, 2e-7 * r / h, "r_max_corner", row);
-        assertNear(r - centre, number(&t, row, "bias_exact"), 1e-12 * r, "bias_exact", row);
-        assertNear(exactBias(r, acos(h / r), alpha), closed, 1e-12 * r, "bias_closed_A", row);
-        assert_true(closed >= number(&t, row, "bias_exact") * (1 - 1e-12) &&
-                    tan(alpha) <= (double)shadow.texelTangent * 1.0000001);
-        // The largest angle of the map, and the texel's own.
-        const double bias = (double)vplShadow_Bias(&shadow, (float)r, (float)(h / r));
-        assertNear(bias - r * BIAS_ADDED, exactBias(r, acos(h / r), atan((double)shadow.texelTangent)),
-                   r * BIAS_SLACK, "bias", row);
-        shadow.texelTangent = (float)tan(alpha);
-        assertNear((double)vplShadow_Bias(&shadow, (float)r, (float)(h / r)) - r * BIAS_ADDED, closed,
-                   r * BIAS_SLACK, "bias of the texel", row);
-        finite++;
-    }
-    assert_int_equal(finite, 312);
-    assert_int_equal(horizon, 94);
-    assert_true(points > 110000);
-    freeTable(&t);
-}
-
-// bias_pair.csv: the least dynamic bias is enough up to the greatest angle, which binds.
-TEST(PairsOfTheTableAreJustEnough, 1)
-{
-    Table t = loadTable("bias_pair.csv");
-    FlatMap flat;
-    makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
-    for (int row = 0; row < t.rows; row++) {
-        enum { ANGLES = 4000 };
-        const double alpha = number(&t, row, "alpha"), most = number(&t, row, "theta_max_deg") * VPL_PI / 180,
-                     fixed = number(&t, row, "bs_over_r"), dynamic = number(&t, row, "bdmax_over_r_min"),
-                     binding = number(&t, row, "binding_theta_deg") * VPL_PI / 180;
-        assertNear(number(&t, row, "bs_over_r_in_units_of_alpha") * alpha, fixed, 1e-12, "b_s", row);
-        assertNear(number(&t, row, "bdmax_over_r_in_alpha") * alpha, dynamic, 1e-12, "b_dmax", row);
-        const vplShadow pair = pairShadow(&flat.map, (float)fixed, (float)dynamic);
-        vplShadow exact = exactShadow(&flat.map, 1, 0);
-        exact.texelTangent = (float)tan(alpha);
-        for (int i = 1; i <= ANGLES; i++) {
-            const float c = (float)cos(most * i / ANGLES);
-            const double needed = (double)vplShadow_Bias(&exact, 1, c) - BIAS_ADDED;
-            assert_true((double)vplShadow_Bias(&pair, 1, c) >= needed * (1 - 1e-5) - BIAS_SLACK);
-        }
-        const double given = (double)vplShadow_Bias(&pair, 1, (float)cos(most)),
-                     atBinding = (double)vplShadow_Bias(&pair, 1, (float)cos(binding));
-        assertNear(given, number(&t, row, "bias_over_r_at_theta_max"), 1e-7 * (fixed + dynamic),
-                   "at the most", row);
-        if (dynamic > 0) {
-            assertNear(atBinding, exactBias(1, binding, alpha), 1e-5 * atBinding + 1e-7 * dynamic, "binding",
-                       row);
-        } else {
-            assertNear(binding, 0, 0, "nothing binds", row);
-        }
-    }
-    assert_int_equal(t.rows, 50);
-    freeTable(&t);
-}
-
-// The automatic pair is b_s = alpha far and b_dmax = 5.6 b_s. Without end, finer maps need (tan t - 1) / (1 -
-// cos t), which is 5.6 at 79.9 degrees.
-TEST(AutomaticPairIsJustEnoughUpTo79Point9Degrees, 1)
-{
-    static const int sizes[] = {64, 512, 724, 1448, 8192};
-    FlatMap flat;
-    makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
-    for (int k = 0; k < 5; k++) {
-        flat.map.size = sizes[k];
-        const vplShadow pair = pairShadow(&flat.map, -1, -1), exact = exactShadow(&flat.map, 1, 0);
-        assertNear((double)pair.def.biasStatic * sizes[k], 10 * sqrt(2), 1e-5, "b_s", sizes[k]);
-        assertNear((double)(pair.def.biasDynamic / pair.def.biasStatic), 5.6, 1e-6, "b_dmax", sizes[k]);
-        double least = INFINITY;
-        for (int i = 1; i <= 4000; i++) {
-            const float c = (float)cos(79.9 * VPL_PI / 180 * i / 4000);
-            const double needed = (double)vplShadow_Bias(&exact, 10, c) - 10 * BIAS_ADDED;
-            least = fmin(least, (double)vplShadow_Bias(&pair, 10, c) / needed);
-        }
-        assert_true(least >= 1 && (sizes[k] < 512 || least < 1.02));
-    }
 }
 
 // peter_panning.csv: the width of the light leak behind a thin wall at x0. Seen from the light at height h, the
@@ -309,7 +124,8 @@ TEST(PcfGivesTheExpectationOfADisc, 2)
 }
 
 // pcf_grid.csv: the table's own offsets replace ours, and counts must be exact, also where a sample falls on the
-// edge: lengths are such that the edge then lies between two texels.
+// edge: lengths are such that the edge then lies between two texels. The expectation is that of a square, to the last digit
+// in test_formulas.c; samples in a grid find it to half of the grid's step.
 TEST(PcfCountsTheGridsOfTheTable, 2)
 {
     Table t = loadTable("pcf_grid.csv");
