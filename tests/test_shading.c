@@ -7,7 +7,6 @@
 #include "math/vec.h"
 #include "shading/shading.h"
 
-#include <float.h>
 #include <stdlib.h>
 
 static double irradiance(const vplContext* context, vplLighting lighting, float minDistance, vplVec3 p,
@@ -278,53 +277,6 @@ TEST(LightsOfBothLightingsDifferByTheFactorsOfTheTable, 1)
     vplLightSet_Destroy(documented);
     vplLightSet_Destroy(physical);
     vplGeometry_Destroy(cube);
-}
-
-// Half the distance along the axis that rounding a depth to float hides. `slope`: growth of depth with it.
-static double halfStep(double depth, double slope)
-{
-    return 0.5 * ((double)nextafterf((float)depth, 2) - (double)(float)depth) / slope;
-}
-
-// depth_precision.csv: the camera's z/w is reversed, 1 at near and 0 at far, and what rounding hides then is the
-// table's. The other columns of steps are those of depths that are not used, and show why.
-TEST_ALONE(DepthIsReversedAndThatOfTheTable)
-{
-    Table t = loadTable("depth_precision.csv");
-    for (int row = 0; row < t.rows; row++) {
-        vplCameraDef camera = vplDefaultCameraDef();
-        camera.eye = vplVec(0, 0, 0);
-        camera.target = vplVec(0, 0, -1);
-        const double n = camera.nearPlane = number(&t, row, "near"),
-                     f = camera.farPlane = number(&t, row, "far");
-        const double z = number(&t, row, "view_z"), printed = number(&t, row, "z_ndc");
-        const double wanted = n / (f - n) * (f - z) / z, slope = f / (f - n) * n / (z * z);
-        vplView view = vplView_Create(&camera, 8, 8);
-        vplVec3 point = vplVec(0, 0, -(float)z);
-        float clip[1][4];
-        vplView_ToClip(&view, &point, 1, clip);
-        // The view depth is a float: half an ulp of it changes z/w by slope times that.
-        assertNear((double)clip[0][2] / (double)clip[0][3], wanted, 1.5e-7 * wanted + 6e-8 * z * slope, "z/w",
-                   row);
-        assertNear(printed, 1 - wanted, 1e-12, "z_ndc", row);
-        struct {
-            const char* column;
-            double step;
-        } steps[] = {{"half_step_float32_reversed", halfStep(wanted, slope)},
-                     {"half_step_float32", halfStep(printed, slope)},
-                     {"half_step_float32_distance_over_far", halfStep(z / f, 1 / f)},
-                     {"half_step_unorm24", 0x1p-25 / slope},
-                     {"half_step_unorm16", 0x1p-17 / slope}};
-        for (int k = 0; k < 5; k++) {
-            const double half = number(&t, row, steps[k].column);
-            if (k == 1 && printed == 1 && half < 0.75 * steps[k].step) {
-                steps[k].step /= 2; // floats have two steps at 1, and the table takes either
-            }
-            assertNear(steps[k].step, half, 1e-5 * half, steps[k].column, row);
-        }
-    }
-    assert_int_equal(t.rows, 42);
-    freeTable(&t);
 }
 
 // Renders a floor from above, lit by `lights`.
