@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of the rasterizer against tables of exact answers: coverage bit for bit, interpolation and clipping
-// within documented errors. Covers extremes X071 to X081.
+// Tests of the rasterizer against tables of exact answers: coverage bit for bit, interpolation within documented errors;
+// test_clip_tables.c has clipping. Covers extremes X071 to X081.
 #include "raster_support.h"
 
 #include "raster/raster.h"
@@ -197,92 +197,5 @@ TEST(VaryingsBarycentricsDepthAndWAreThoseOfTheTable, 1)
     assert_int_equal(t.rows, 286);
     freeCanvas(&canvas[0]);
     freeCanvas(&canvas[1]);
-    freeTable(&t);
-}
-
-static void loadClipTriangle(const Table* t, int row, ClipVertex v[3])
-{
-    for (int i = 0; i < 3; i++) {
-        char names[4][3] = {"x?", "y?", "z?", "w?"};
-        float values[4];
-        for (int k = 0; k < 4; k++) {
-            names[k][1] = (char)('0' + i);
-            values[k] = (float)number(t, row, names[k]);
-        }
-        v[i] = (ClipVertex){values[0], values[1], values[2], values[3], {i == 0, i == 1, i == 2}};
-    }
-}
-
-// How fast z/w grows over a picture of `size` pixels a side: the sum of the magnitudes along both axes, per
-// pixel. z is g x + h y + k w at all corners.
-static double depthSlope(const ClipVertex v[3], int size)
-{
-    double det = 0, g = 0, h = 0;
-    for (int i = 0; i < 3; i++) {
-        const ClipVertex *a = &v[i], *b = &v[(i + 1) % 3], *c = &v[(i + 2) % 3];
-        const double ax = a->x, az = a->z, bx = b->x, by = b->y, bw = b->w, cx = c->x, cy = c->y, cw = c->w;
-        det += ax * (by * cw - bw * cy);
-        g += az * (by * cw - bw * cy);
-        h += az * (bw * cx - bx * cw);
-    }
-    return (fabs(g) + fabs(h)) / fabs(det) * 2 / size;
-}
-
-// Three columns are not compared: polygon_xyzw and n_out, the corners of what is left, are not to be seen from
-// outside, but its pixels are; behind_hint is a wish of the table's maker. 54 rows of clip_pixels.csv belong to
-// triangles that clip_near.csv, a random subset of its own, lacks.
-TEST(NearClipCoversWhatTheHomogeneousTestSays, 1)
-{
-    Table t = loadTable("clip_near.csv"), pixels = loadTable("clip_pixels.csv");
-    Canvas c = makeCanvas(32, 32, 0);
-    int tested = 0;
-    for (int row = 0; row < t.rows; row++) {
-        ClipVertex v[3];
-        loadClipTriangle(&t, row, v);
-        vplPipeline p = showPipeline(v);
-        drawList(context, &c, &p, NULL, 3, 1);
-        const char* map = cell(&t, row, "map_rle");
-        int at = 0, seen[128] = {0};
-        while (*map) {
-            char value = *map;
-            char* end;
-            long count = strtol(map + 2, &end, 10);
-            seen[(int)value] += (int)count;
-            for (long i = 0; i < count; i++, at++) {
-                if (value != '?' && (c.planes[0][at] == 1) != (value == '1')) {
-                    fail_msg("row %d, pixel (%d, %d): %g, wanted %c", row, at % 32, at / 32,
-                             (double)c.planes[0][at], value);
-                }
-            }
-            map = *end == ' ' ? end + 1 : end;
-        }
-        assert_int_equal(at, 1024);
-        assertNear(seen['1'], number(&t, row, "inside"), 0, "inside", row);
-        assertNear(seen['?'], number(&t, row, "edge"), 0, "edge", row);
-        // Barycentrics and w refer to the original corners after clipping, and snapping does not move them.
-        // Depth is that of the snapped corners, which are off by up to 1/512 pixel along each axis.
-        const double slope = depthSlope(v, 32);
-        for (int pixelRow = 0; pixelRow < pixels.rows; pixelRow++) {
-            if (strcmp(cell(&pixels, pixelRow, "tri"), cell(&t, row, "tri")) != 0) {
-                continue;
-            }
-            int pixel = (int)number(&pixels, pixelRow, "py") * 32 + (int)number(&pixels, pixelRow, "px");
-            assert_true(c.planes[0][pixel] == 1);
-            const char* names[3] = {"lam0", "lam1", "lam2"};
-            for (int i = 0; i < 3; i++) {
-                assertNear((double)c.planes[2 + i][pixel], number(&pixels, pixelRow, names[i]), 4e-7,
-                           names[i], pixelRow);
-            }
-            const double w = number(&pixels, pixelRow, "w"), z = number(&pixels, pixelRow, "z_ndc");
-            assertNear((double)c.depth[pixel], z, 1.5e-7 + slope / 512, "z", pixelRow);
-            assertNear((double)c.planes[5][pixel] / w, 1, 6e-7, "w", pixelRow);
-            tested++;
-        }
-    }
-    assert_int_equal(t.rows, 82);
-    assert_int_equal(tested, 145);
-    assert_int_equal(pixels.rows, 145 + 54);
-    freeCanvas(&c);
-    freeTable(&pixels);
     freeTable(&t);
 }
