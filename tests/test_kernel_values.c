@@ -78,6 +78,8 @@ static void compareOpen(const vplContext* context, const Table* t, int row, int 
                row);
     if (g == 0) {
         assertNear(physical(context, p, 0), 0, 0, "G", row);
+        assertNear(physical(context, p, sqrt(number(t, row, "c"))), number(t, row, "G_clamped_r2"), 0,
+                   "G_clamped_r2", row);
         return;
     }
     const double cx = number(t, row, "cos_x"), cy = number(t, row, "cos_y");

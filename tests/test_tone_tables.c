@@ -65,10 +65,10 @@ TEST_ALONE(EverySrgbValueOfTheTable)
                    "encode", row);
         near += compareCode(&t, row);
         if (!isEmpty(&t, row, "encoded_unclamped")) {
-            const double free = number(&t, row, "encoded_unclamped");
-            assertNear(wanted, fmin(free, 1), 0, "unclamped", row);
-            unclamped += free <= 1;
-            beyond += free > 1;
+            const double value = number(&t, row, "encoded_unclamped");
+            assertNear(wanted, fmin(value, 1), 0, "unclamped", row);
+            unclamped += value <= 1;
+            beyond += value > 1;
         }
     }
     assert_int_equal(t.rows, 17);
