@@ -3,9 +3,6 @@
 // extremes X001 to X005, X008, X021 to X023, X029 and X031.
 #include "shapes.h"
 
-#include "geometry/bvh.h"
-#include "geometry/triangle.h"
-#include "math/double3.h"
 #include "math/vec.h"
 
 TEST(EveryRayOfTheRoomMeetsTheObjectOfTheTable, 1)

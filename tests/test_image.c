@@ -8,7 +8,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 static vplImage* makeImage(vplContext* context, int width, int height)

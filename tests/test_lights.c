@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests of particle counts and the particle simulation; test_totals.c has whole simulations by the hundred. Covers
 // extremes X029 to X048.
-#include "shapes.h"
+#include "scenes.h"
 
 #include "lights/particles.h"
 #include "math/sampling.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of exposure and tone maps, but for Reinhard's, which are in test_image.c. Covers extremes X109 to
-// X111.
+// Tests of exposure and tone maps, but for Reinhard's, which are in test_tone_tables.c and test_image.c. Covers
+// extremes X109 to X111.
 #include "test.h"
 
 #include <float.h>
