@@ -28,6 +28,11 @@ int vplContext_GetWorkerCount(const vplContext* context);
 // VPL_OUT_OF_MEMORY.
 vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size);
 
+// Reads a whole file, of any size, or what a device or a pipe has to its end, at most 256 MiB, while it asks the context's
+// progress. A 0 byte follows the bytes, which are freed by vplBytes_Free. VPL_FILE_ERROR, VPL_LIMIT, VPL_CANCELLED,
+// VPL_OUT_OF_MEMORY.
+vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut);
+
 // Makes reading look for files among these first, by name, and on disk for what is not among them. They must last until
 // another call; NULL with a count of 0 (default): only disk. vplScene_LoadMemory sets them for its own duration.
 void vplContext_SetFiles(vplContext* context, const vplMemoryFile* files, int count);

@@ -110,6 +110,7 @@ static int openToRead(const char* path)
 
 vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut)
 {
+    REQUIRE(context, context, path, bytesOut, sizeOut);
     const vplMemoryFile* held = findInMemory(context, path);
     if (held != NULL) {
         return readFromMemory(context, held, bytesOut, sizeOut);

@@ -8,10 +8,6 @@
 // Most bytes that are read of what does not say its size: a device or a pipe.
 enum { VPL_MAX_STREAM_BYTES = 256 << 20 };
 
-// Reads a whole file and adds a 0 byte behind it. *bytesOut is freed with vplFree. VPL_LIMIT for a device or
-// pipe without an end.
-vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut);
-
 // True if `path` names a regular file, not a folder, device or pipe.
 bool vplIsRegularFile(const vplContext* context, const char* path);
 

@@ -3,11 +3,8 @@
 // together. A part is a file of pieces (vpl/pieces.h), one behind the other.
 #include "cli/cli.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 // Bytes that grow; NULL before the first.
 typedef struct Bytes {
@@ -97,38 +94,36 @@ bool checkTile(const Arguments* a)
 
 // ---- vpl merge
 
-static bool readPart(const char* path, Bytes* all)
+// Adds all pieces of a file.
+static vplResult addPart(vplContext* context, vplAssembly* assembly, const char* path)
 {
-    struct stat info;
-    FILE* file = stat(path, &info) == 0 && S_ISDIR(info.st_mode) ? NULL : fopen(path, "rb");
-    uint8_t chunk[1 << 16];
-    if (file == NULL) {
-        complain("%s: cannot open: %s", path, S_ISDIR(info.st_mode) ? strerror(EISDIR) : strerror(errno));
-        return false;
+    char* bytes;
+    size_t size;
+    TRY(vplReadFile(context, path, &bytes, &size));
+    vplResult result = VPL_SUCCESS;
+    for (size_t at = 0, used = 0; result == VPL_SUCCESS && at < size; at += used) {
+        result = askInterrupts(NULL, 0)
+                     ? vplAssembly_Add(assembly, (uint8_t*)bytes + at, size - at, path, &used)
+                     : VPL_CANCELLED;
     }
-    bool good = true;
-    for (size_t got = 1; good && got > 0;) {
-        got = fread(chunk, 1, sizeof chunk, file);
-        good = got == 0 || append(all, chunk, got);
-    }
-    if (good && ferror(file)) {
-        complain("%s: cannot read: %s", path, strerror(errno));
-        good = false;
-    }
-    fclose(file);
-    return good;
+    vplBytes_Free(context, (uint8_t*)bytes);
+    return result;
 }
 
-// Adds all pieces of a file; an exit code.
-static int addPart(vplAssembly* assembly, const char* path)
+// Puts the picture of all files together. An interrupt ends it; afterwards the picture is written.
+static vplResult mergeParts(const Arguments* a, vplContext* context, vplImage** imageOut)
 {
-    Bytes all = {NULL, 0};
-    int code = readPart(path, &all) ? EXIT_DONE : EXIT_USAGE;
-    for (size_t at = 0, used = 0; code == EXIT_DONE && at < all.size; at += used) {
-        code = exitCode(vplAssembly_Add(assembly, all.bytes + at, all.size - at, path, &used), true);
+    vplAssembly* assembly = NULL;
+    catchInterrupts();
+    vplContext_SetProgress(context, askInterrupts, NULL);
+    vplResult result = vplAssembly_Create(context, &assembly);
+    for (int i = 0; i < a->positionalCount && result == VPL_SUCCESS; i++) {
+        result = addPart(context, assembly, a->positionals[i]);
     }
-    free(all.bytes);
-    return code;
+    result = result == VPL_SUCCESS ? vplAssembly_GetImage(assembly, imageOut) : result;
+    vplAssembly_Destroy(assembly);
+    vplContext_SetProgress(context, NULL, NULL);
+    return result;
 }
 
 int runMerge(const Arguments* a)
@@ -144,21 +139,12 @@ int runMerge(const Arguments* a)
         return EXIT_COULD_NOT;
     }
     vplContext* context = openContext(a);
-    vplAssembly* assembly = NULL;
     vplImage* image = NULL;
-    int code = context != NULL ? exitCode(vplAssembly_Create(context, &assembly), false) : EXIT_USAGE;
-    for (int i = 0; i < a->positionalCount && code == EXIT_DONE; i++) {
-        code = addPart(assembly, a->positionals[i]);
-    }
+    int code = context != NULL ? exitCode(mergeParts(a, context, &image), true) : EXIT_USAGE;
     if (code == EXIT_DONE) {
-        code = exitCode(vplAssembly_GetImage(assembly, &image), true);
-    }
-    if (code == EXIT_DONE) {
-        catchInterrupts();
         code = writeWholePicture(a, image);
     }
     vplImage_Destroy(image);
-    vplAssembly_Destroy(assembly);
     vplContext_Destroy(context);
     return code;
 }

@@ -222,7 +222,7 @@ int renderFrames(Ranks* r, vplScene* scene)
                               : exitCode(vplHistory_Create(f.context, &f.options.sequence.history), false);
     if (code == EXIT_DONE && r->rank == 0) {
         code = checkNames(&f);
-        code = code == EXIT_DONE ? openJournal(&f.journal, a, f.title, readLines, &f) : code;
+        code = code == EXIT_DONE ? openJournal(&f.journal, f.context, a, f.title, readLines, &f) : code;
     }
     code = largestNumber(r, code);
     code = code == EXIT_DONE ? renderFirst(&f, &work) : code;

@@ -4,38 +4,16 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-// Reads a file to memory; false after complaining. *bytesOut is freed with free.
-static bool readWhole(const char* path, uint8_t** bytesOut, size_t* sizeOut)
+// Reads a file; an exit code. *bytesOut is freed by vplBytes_Free.
+static int readWhole(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut)
 {
-    FILE* file = fopen(path, "rb");
-    uint8_t* bytes = NULL;
-    size_t size = 0, room = 0, got = 1;
-    bool good = file != NULL;
-    while (good && got > 0) {
-        if (room - size < 1 << 16) {
-            room = 2 * room + (1 << 17);
-            uint8_t* grown = realloc(bytes, room);
-            good = grown != NULL;
-            bytes = good ? grown : bytes;
-        }
-        got = good ? fread(bytes + size, 1, room - size, file) : 0;
-        size += got;
-    }
-    if (!good || ferror(file)) {
-        complain("%s: cannot read: %s", path, strerror(errno));
-        free(bytes);
-        good = false;
-    }
-    if (file != NULL) {
-        fclose(file);
-    }
-    *bytesOut = good ? bytes : NULL;
-    *sizeOut = size;
-    return good;
+    vplContext_SetProgress(context, askInterrupts, NULL);
+    const vplResult result = vplReadFile(context, path, bytesOut, sizeOut);
+    vplContext_SetProgress(context, NULL, NULL);
+    return exitCode(result, true);
 }
 
 // Makes the file begin with `bytes`. What it has beyond them is cut off last, so that nothing is lost if the job ends here.
@@ -52,14 +30,16 @@ static bool beginFile(Journal* j, const char* path, const void* bytes, size_t si
     return true;
 }
 
-int openJournal(Journal* j, const Arguments* a, const char* title, ReadUnits* read, void* user)
+int openJournal(Journal* j, vplContext* context, const Arguments* a, const char* title, ReadUnits* read,
+                void* user)
 {
     const char *from = a->resume, *to = a->checkpoint;
-    uint8_t* bytes = NULL;
+    char* bytes = NULL;
     size_t size = 0, kept = 0;
     int code = EXIT_DONE;
     if (from != NULL) {
-        code = readWhole(from, &bytes, &size) ? read(user, from, bytes, size, &kept) : EXIT_USAGE;
+        code = readWhole(context, from, &bytes, &size);
+        code = code == EXIT_DONE ? read(user, from, (uint8_t*)bytes, size, &kept) : code;
     }
     const bool same = from != NULL && to != NULL && strcmp(from, to) == 0;
     if (code == EXIT_DONE && to != NULL && !same && access(to, F_OK) == 0) {
@@ -68,11 +48,10 @@ int openJournal(Journal* j, const Arguments* a, const char* title, ReadUnits* re
     }
     if (code == EXIT_DONE && to != NULL) {
         const bool fresh = kept == 0 && title != NULL;
-        code = beginFile(j, to, fresh ? (const void*)title : bytes, fresh ? strlen(title) : kept)
-                   ? EXIT_DONE
-                   : EXIT_COULD_NOT;
+        code = beginFile(j, to, fresh ? title : bytes, fresh ? strlen(title) : kept) ? EXIT_DONE
+                                                                                     : EXIT_COULD_NOT;
     }
-    free(bytes);
+    vplBytes_Free(context, (uint8_t*)bytes);
     return code;
 }
 

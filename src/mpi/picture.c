@@ -126,7 +126,9 @@ static int prepare(Picture* p, const vplScene* scene, Work* work)
     }
     if (code == EXIT_DONE && zero) {
         code = exitCode(vplAssembly_Create(p->context, &p->assembly), false);
-        code = code == EXIT_DONE ? openJournal(&p->journal, p->ranks->arguments, NULL, readPieces, p) : code;
+        code = code == EXIT_DONE
+                   ? openJournal(&p->journal, p->context, p->ranks->arguments, NULL, readPieces, p)
+                   : code;
         code = code == EXIT_DONE ? exitCode(divide(p), true) : code;
     }
     code = largestNumber(p->ranks, code);

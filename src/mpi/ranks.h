@@ -106,7 +106,8 @@ typedef int ReadUnits(void* user, const char* path, const uint8_t* bytes, size_t
 
 // Reads the file of --resume, and opens that of --checkpoint, which then has what was kept, or else the text `title`
 // (NULL: nothing). An exit code; without these options nothing is done.
-int openJournal(Journal* journal, const Arguments* arguments, const char* title, ReadUnits* read, void* user);
+int openJournal(Journal* journal, vplContext* context, const Arguments* arguments, const char* title,
+                ReadUnits* read, void* user);
 
 // Adds a unit. Where the disk is full the file keeps the units before; false after complaining.
 bool appendJournal(Journal* journal, const void* bytes, size_t size);

@@ -47,6 +47,7 @@ fi
 # A scene may come from a pipe, which may have no end, or nothing to say.
 if [ -c /dev/zero ]; then
     refuses SceneHasNoEnd 2 "cannot read: it has no end within 256 MiB" "$vpl" info /dev/zero
+    refuses PartHasNoEnd 2 "cannot read: it has no end within 256 MiB" "$vpl" merge /dev/zero -o "$out/a.pfm"
 fi
 if command -v timeout >/dev/null 2>&1; then
     mkfifo "$scratch/silent"
@@ -59,6 +60,7 @@ if command -v timeout >/dev/null 2>&1; then
     mkfifo "$scratch/silent.pfm"
     for command in "render -o $out/a.pfm --method path --resume $scratch/silent" \
         "render -o $out/a.pfm --method path --resume $scratch/silent.pfm" \
+        "merge -o $out/a.pfm $scratch/silent" \
         "tradeoff -o $out/a --reference $scratch/silent.pfm"; do # the latter has no writer yet
         # shellcheck disable=SC2086 # the words of a command
         timeout -s TERM -k 5 0.5 "$vpl" $command "$room" 2>"$scratch/stderr"

@@ -195,6 +195,8 @@ for implementation in openmpi mpich; do
         $options --seed 9 -o "$scratch/no.pfm" --resume "$scratch/pieces"
     check "OldFileIsNotOverwritten_$implementation" refuses 2 "is there already" ranks $implementation 2 render \
         $options -o "$scratch/no.pfm" --checkpoint "$scratch/pieces"
+    check "FileOfPiecesHasNoEnd_$implementation" refuses 2 "it has no end within 256 MiB" ranks $implementation 2 render \
+        $options -o "$scratch/no.pfm" --resume /dev/zero
     check "MissingSceneIsToldOnce_$implementation" refuses 2 "cannot open" ranks $implementation 3 render \
         nowhere.json -o "$scratch/no.pfm"
     check "WrongOptionIsToldOnce_$implementation" refuses 2 "unknown option" ranks $implementation 3 render \
