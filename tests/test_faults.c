@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Files that fail: at every byte that is written or read, when they are flushed or renamed, or where they end too early.
 // This program's read, write, fsync and rename replace those of the C library.
+#include "cli/cli.h"
+#undef TRY // that of the library is the same
 #include "failing.h"
 #include "patch_support.h"
 
@@ -96,6 +98,7 @@ typedef struct Files {
     vplImage* image;
     vplRenderer* renderer;
     vplPlan* plan;
+    Arguments tile; // of vpl render --tile
     SidesFixture sides;
     vplPatchMesh* mesh;
     char sentence[300];
@@ -138,6 +141,7 @@ static void openFiles(Files* f)
     assert_int_equal(vplRenderer_Create(f->scene, &options, &f->renderer), VPL_SUCCESS);
     assert_int_equal(vplRenderer_Step(f->renderer, &done), VPL_SUCCESS);
     assert_int_equal(vplPlan_Create(f->scene, &options, NULL, &f->plan), VPL_SUCCESS);
+    f->tile = (Arguments){.render = options, .tile = {1, 1}, .quiet = true};
     f->sides = openFronts(f->context, corners, 1, 0, 1);
     f->mesh = meshOf(f->sides.sides);
 }
@@ -165,7 +169,7 @@ static vplResult writeImage(Files* f, const char* path)
     return vplImage_Write(f->image, path, NULL);
 }
 
-static vplResult writeLayers(Files* f, const char* path)
+static vplResult writeTwoLayers(Files* f, const char* path)
 {
     const vplLayer layers[] = {{.name = "", .kind = VPL_LAYER_COLOUR, .image = f->image},
                                {.name = "depth", .kind = VPL_LAYER_NUMBER, .image = f->image}};
@@ -188,6 +192,12 @@ static vplResult writeState(Files* f, const char* path)
     return vplRenderer_Save(f->renderer, path);
 }
 
+static vplResult writePart(Files* f, const char* path)
+{
+    f->tile.output = path;
+    return renderTile(&f->tile, f->scene) == EXIT_DONE ? VPL_SUCCESS : VPL_FILE_ERROR;
+}
+
 // Statistics, tables, plots and reports of the program are such texts.
 static vplResult writeText(Files* f, const char* path)
 {
@@ -197,9 +207,9 @@ static vplResult writeText(Files* f, const char* path)
 static const struct {
     FileFcn* write;
     const char* name;
-} WRITERS[] = {{writeImage, "a.png"}, {writeImage, "a.pfm"},  {writeImage, "a.hdr"},
-               {writeImage, "b.exr"}, {writeLayers, "c.exr"}, {writeMesh, "a.ply"},
-               {writePlan, "p.json"}, {writeState, "state"},  {writeText, "a.txt"}};
+} WRITERS[] = {{writeImage, "a.png"},     {writeImage, "a.pfm"}, {writeImage, "a.hdr"}, {writeImage, "b.exr"},
+               {writeTwoLayers, "c.exr"}, {writeMesh, "a.ply"},  {writePlan, "p.json"}, {writeState, "state"},
+               {writeText, "a.txt"},      {writePart, "part"}};
 enum { WRITER_COUNT = sizeof WRITERS / sizeof *WRITERS };
 
 static bool canWrite(int writer)
@@ -350,6 +360,22 @@ static vplResult readState(Files* f, const char* path)
     return result;
 }
 
+// As vpl merge does.
+static vplResult readPart(Files* f, const char* path)
+{
+    vplAssembly* assembly;
+    char* bytes;
+    size_t size, used;
+    vplResult result = vplReadFile(f->context, path, &bytes, &size);
+    if (result == VPL_SUCCESS) {
+        assert_int_equal(vplAssembly_Create(f->context, &assembly), VPL_SUCCESS);
+        result = vplAssembly_Add(assembly, (uint8_t*)bytes, size, path, &used);
+        vplAssembly_Destroy(assembly);
+        vplBytes_Free(f->context, (uint8_t*)bytes);
+    }
+    return result;
+}
+
 static const struct {
     FileFcn* read;
     const char* path;
@@ -358,6 +384,8 @@ static const struct {
                {readScene, "tests/data/obj/meshes.json", -1},
                {readScene, "tests/data/obj/everything.obj", -1}, // with two MTL files
                {readScene, "tests/data/gltf/everything.glb", -1},
+               {readScene, "tests/data/gltf/apart/triangle.gltf", -1}, // with a buffer and two pictures
+               {readScene, "tests/data/textured.json", -1},
                {readScene, "tests/data/ply/odd/more-elements.ply", -1},
                {readScene, "tests/data/stl/odd/upper-case-name.STL", -1},
                {readEnvironment, "tests/fuzz/corpus/image/small.hdr", -1},
@@ -367,6 +395,8 @@ static const struct {
                {readImage, "tests/fuzz/corpus/image/small.bmp", -1},
                {readImage, "tests/fuzz/corpus/image/small.tga", -1},
                {readImage, "tests/fuzz/corpus/image/small.exr", -1},
+               {readImage, "tests/data/gltf/apart/picture.jpg", -1},
+               {readPart, NULL, 9},
                {readPlan, NULL, 6},
                {readState, NULL, 7}};
 enum { READER_COUNT = sizeof READERS / sizeof *READERS };

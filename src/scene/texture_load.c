@@ -2,6 +2,7 @@
 // Textures from picture files: read once per scene, whatever refers to them.
 #include "scene/texture_load.h"
 
+#include "base/arena.h" // TRY
 #include "base/file.h"
 #include "image/image_file.h"
 #include "image/texels.h"
@@ -104,10 +105,7 @@ vplResult vplScene_LoadTexture(vplScene* scene, const vplTextureFile* file, int*
     }
     if (file->bytes == NULL &&
         vplIsRegularFile(scene->context, file->path)) { // a pipe or device would make us wait
-        const vplResult result = vplReadFile(scene->context, file->path, &read, &size);
-        if (result == VPL_OUT_OF_MEMORY || result == VPL_CANCELLED) {
-            return result;
-        }
+        TRY(vplReadFile(scene->context, file->path, &read, &size));
     }
     const uint8_t* bytes = file->bytes != NULL ? file->bytes : (const uint8_t*)read;
     int index = -1;
