@@ -4,6 +4,8 @@
 #include "base/context.h"
 #include "pass_cases.h"
 
+#include <unistd.h>
+
 // Cancels at one call.
 typedef struct Stop {
     int calls, at;
@@ -82,6 +84,57 @@ TEST_ALONE(ACancelledPassLeavesThoseBefore, SLOW)
             tried++;
         }
         assert_true(tried >= 4);
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+}
+
+// Loads a state with a stop at call `at`, and then again. Returns false if there were fewer calls.
+static bool stopLoadingAt(const vplScene* scene, vplRenderOptions o, int at, const Seen* loaded,
+                          const Seen* last, const char* path)
+{
+    Stop stop = {0, 0};
+    vplRenderer* r;
+    bool done;
+    o.progress = stopOnce;
+    o.progressUser = &stop;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    stop = (Stop){0, at};
+    const vplResult result = vplRenderer_Load(r, path, &done);
+    const bool stopped = stop.calls >= at;
+    assert_int_equal(result, stopped ? VPL_CANCELLED : VPL_SUCCESS);
+    if (stopped) {
+        assert_int_equal(stop.calls, at);
+        assert_int_equal(vplRenderer_Load(r, path, &done), VPL_SUCCESS);
+    }
+    stop.at = 0; // the rest is not stopped
+    const Seen first = look(r, NULL);
+    assertSeenSame(&first, loaded);
+    stepToEnd(r);
+    const Seen end = look(r, NULL);
+    assertSeenSame(&end, last);
+    vplRenderer_Destroy(r);
+    return stopped;
+}
+
+TEST_ALONE(AStateWhoseReadingIsCancelledIsReadAgain)
+{
+    for (int i = 0; i < PASS_CASES; i++) {
+        char path[128];
+        vplContext* context = openTestContext(1);
+        vplScene* scene;
+        Seen passes[MOST_PASSES + 1];
+        bool ended;
+        const vplRenderOptions o = passCase(context, i, &scene);
+        renderPasses(scene, &o, passes, NULL);
+        snprintf(path, sizeof path, "%s", temporaryName(".state"));
+        saveAfter(scene, &o, 2, path, &ended);
+        int at = 1;
+        while (stopLoadingAt(scene, o, at, &passes[2], &passes[MOST_PASSES], path)) {
+            at += 1 + at / 6;
+        }
+        assert_true(at > 2);
+        unlink(path);
         vplScene_Destroy(scene);
         closeTestContext(context);
     }
