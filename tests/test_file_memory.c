@@ -87,7 +87,8 @@ static vplResult renderPieces(Attempt* a)
     o.output.width = 2;
     o.output.height = a->variant == 1 ? 20 : 70; // two bands
     o.shadow.mapSize = o.lights.mapSize = 4;
-    TRY(vplScene_Load(a->context, a->variant == 2 ? "tests/data/corner-path.json" : "examples/scenes/room-area.json",
+    TRY(vplScene_Load(a->context,
+                      a->variant == 2 ? "tests/data/corner-path.json" : "examples/scenes/room-area.json",
                       &a->scene));
     const vplResult result = putTogether(a, &p, &o);
     vplAssembly_Destroy(p.assembly);

@@ -109,7 +109,8 @@ TEST(APictureOfAnotherSizeDoesNotFitTheRenderer, 1)
     assert_int_equal(vplAssembly_CountMissing(p.assembly), 0);
     assertRefused(vplAssembly_CheckRenderer(p.assembly, p.renderer), VPL_INVALID_ARGUMENT,
                   "this render: divided in 1 bands of 64 rows and 2 passes");
-    assertRefused(vplAssembly_GetLayers(p.assembly, p.renderer, &layers), VPL_INVALID_ARGUMENT, "this render");
+    assertRefused(vplAssembly_GetLayers(p.assembly, p.renderer, &layers), VPL_INVALID_ARGUMENT,
+                  "this render");
     assert_null(layers);
     closePiece(context, &p);
 }

@@ -21,11 +21,12 @@ static bool answer(void* user, double fraction)
 // A closed room that reflects all but a millionth.
 static vplScene* openWhiteRoom(vplContext* context)
 {
-    static const char text[] = "{ \"camera\": { \"eye\": [0, 0, 0.4], \"target\": [0, 0, 0] },"
-                               " \"materials\": { \"white\": { \"diffuse\": [0.999999, 0.999999, 0.999999] } },"
-                               " \"objects\": [{ \"type\": \"box\", \"material\": \"white\" }],"
-                               " \"lights\": [{ \"type\": \"point\", \"position\": [0.1, 0.2, 0], "
-                               "\"intensity\": [1, 1, 1] }] }";
+    static const char text[] =
+        "{ \"camera\": { \"eye\": [0, 0, 0.4], \"target\": [0, 0, 0] },"
+        " \"materials\": { \"white\": { \"diffuse\": [0.999999, 0.999999, 0.999999] } },"
+        " \"objects\": [{ \"type\": \"box\", \"material\": \"white\" }],"
+        " \"lights\": [{ \"type\": \"point\", \"position\": [0.1, 0.2, 0], "
+        "\"intensity\": [1, 1, 1] }] }";
     const vplMemoryFile file = {"white.json", text, sizeof text - 1};
     const vplModelSceneDef def = vplDefaultModelSceneDef();
     vplScene* scene = NULL;
@@ -84,11 +85,9 @@ static vplLightSet spreadLights(vplContext* context, vplVirtualLight* lights, in
 {
     for (int i = 0; i < count; i++) {
         const double x = uniformAt(1, 2 * (uint64_t)i), y = uniformAt(1, 2 * (uint64_t)i + 1);
-        lights[i] =
-            (vplVirtualLight){.position = {(float)x, 0, (float)y}, .normal = {0, 1, 0}, .weight = 1};
+        lights[i] = (vplVirtualLight){.position = {(float)x, 0, (float)y}, .normal = {0, 1, 0}, .weight = 1};
     }
-    return (vplLightSet){
-        .lights = lights, .lightCount = count, .particleCount = count, .context = context};
+    return (vplLightSet){.lights = lights, .lightCount = count, .particleCount = count, .context = context};
 }
 
 // Each cluster that is placed is compared with all lights, and each search compares all lights with clusters that moved.

@@ -1,31 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Puts pieces together. Passes are added in their order, as vplRenderer_Step adds them, so a pass that comes before its
 // turn waits.
-#include "base/context.h"
-#include "render/piece_file.h"
+#include "render/assembly.h"
+
+#include "image/image_file.h"
 #include "render/renderer.h"
-#include "render/stages/make.h"
 #include "render/stages/results.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
-
-// A pass that waits for those before it.
-typedef struct Waiting {
-    float* values; // of the pass, then of its direct light if pieces have it; NULL: the pass does not wait
-    double share;
-} Waiting;
-
-struct vplAssembly {
-    vplContext* context;
-    vplPieceHeader first; // of the first piece that was added; grid.count 0: none was
-    vplImage* base;       // direct light of a mean, else the picture
-    double* sums;         // of the passes of a mean
-    vplImage* direct;     // direct light alone, of a mean the sum over passes; NULL: no piece has it
-    double* weights;      // of each band
-    int* next;            // the pass of each band that is added next
-    Waiting* waiting;     // of each piece
-    int missing;
-};
 
 vplResult vplAssembly_Create(vplContext* context, vplAssembly** assemblyOut)
 {
@@ -41,7 +25,7 @@ vplResult vplAssembly_Create(vplContext* context, vplAssembly** assemblyOut)
 
 static void empty(vplAssembly* a)
 {
-    for (int i = 0; a->waiting != NULL && i < a->first.grid.count; i++) {
+    for (size_t i = 0; i < a->waitingCount; i++) {
         vplFree(a->context, a->waiting[i].values);
     }
     vplImage_Destroy(a->base);
@@ -72,29 +56,39 @@ static vplResult startPicture(vplAssembly* a, const vplPieceHeader* h)
     a->sums = h->mean ? vplAllocZero(c, vplValueCount(a->base), sizeof *a->sums) : NULL;
     a->weights = vplAllocZero(c, (size_t)g->bands, sizeof *a->weights);
     a->next = vplAllocZero(c, (size_t)g->bands, sizeof *a->next);
-    a->waiting = vplAllocZero(c, (size_t)g->count, sizeof *a->waiting);
     a->missing = g->count;
-    const bool whole =
-        (a->sums != NULL || !h->mean) && a->weights != NULL && a->next != NULL && a->waiting != NULL;
+    const bool whole = (a->sums != NULL || !h->mean) && a->weights != NULL && a->next != NULL;
     return whole ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+static vplResult checkHashes(const vplAssembly* a, const vplPieceHeader* h, const char* name)
+{
+    const vplPieceHeader* f = &a->first;
+    return h->scene == f->scene && h->options == f->options
+               ? VPL_SUCCESS
+               : vplFail(a->context, VPL_INVALID_ARGUMENT,
+                         "%s: a part of another picture than the first: %s differ", name,
+                         h->scene != f->scene ? "scene or camera" : "options");
+}
+
+static vplResult checkGrid(const vplAssembly* a, const vplPieceHeader* h, const char* name)
+{
+    const vplPieceHeader* f = &a->first;
+    const bool same =
+        memcmp(&h->grid, &f->grid, sizeof h->grid) == 0 && h->mean == f->mean && h->splits == f->splits;
+    return same ? VPL_SUCCESS
+                : vplFail(
+                      a->context, VPL_INVALID_ARGUMENT,
+                      "%s: divided in %d bands of %d rows and %d passes, must be in %d of %d and %d as the "
+                      "first part",
+                      name, h->grid.bands, h->grid.rows, h->grid.passes, f->grid.bands, f->grid.rows,
+                      f->grid.passes);
 }
 
 static vplResult checkSame(const vplAssembly* a, const vplPieceHeader* h, const char* name)
 {
-    const vplPieceHeader* f = &a->first;
-    if (h->scene != f->scene || h->options != f->options) {
-        return vplFail(a->context, VPL_INVALID_ARGUMENT,
-                       "%s: a part of another picture than the first: %s differ", name,
-                       h->scene != f->scene ? "scene or camera" : "options");
-    }
-    if (memcmp(&h->grid, &f->grid, sizeof h->grid) != 0 || h->mean != f->mean || h->splits != f->splits) {
-        return vplFail(a->context, VPL_INVALID_ARGUMENT,
-                       "%s: divided in %d bands of %d rows and %d passes, must be in %d of %d and %d as the "
-                       "first part",
-                       name, h->grid.bands, h->grid.rows, h->grid.passes, f->grid.bands, f->grid.rows,
-                       f->grid.passes);
-    }
-    return VPL_SUCCESS;
+    TRY(checkHashes(a, h, name));
+    return checkGrid(a, h, name);
 }
 
 vplResult vplAssembly_CheckRenderer(const vplAssembly* assembly, const vplRenderer* renderer)
@@ -105,32 +99,71 @@ vplResult vplAssembly_CheckRenderer(const vplAssembly* assembly, const vplRender
         return VPL_SUCCESS;
     }
     own.scene = vplRenderer_HashScene(renderer);
+    own.mean = renderer->plan->progressive;
+    own.splits = vplPassesSplitLight(renderer->plan);
     TRY(vplRenderer_HashOptions(renderer, &own.options));
-    return checkSame(assembly, &own, "this render");
+    TRY(checkHashes(assembly, &own, "this render"));
+    // Hashes alone do not make a header right: whoever writes a file can copy them.
+    TRY(vplRenderer_Divide(renderer, own.grid.bands, &own.grid));
+    return checkGrid(assembly, &own, "this render");
 }
 
-// Adds the passes of a band whose turn it is.
-static void addPasses(vplAssembly* a, int band)
+// The place of a piece among those that wait, or where it belongs.
+static size_t findWaiting(const vplAssembly* a, int index)
 {
-    const vplPieceGrid* g = &a->first.grid;
-    for (; a->next[band] < g->passes; a->next[band]++) {
-        const int index = band * g->passes + a->next[band];
-        Waiting* w = &a->waiting[index];
-        if (w->values == NULL) {
-            return;
+    size_t first = 0, end = a->waitingCount;
+    while (first < end) {
+        const size_t middle = first + (end - first) / 2;
+        if (a->waiting[middle].index < index) {
+            first = middle + 1;
+        } else {
+            end = middle;
         }
-        const vplPiecePlace place = vplPieceGrid_Place(g, index);
-        const size_t first = 3 * (size_t)place.firstRow * (size_t)g->width;
-        for (size_t k = 0; k < place.values; k++) {
-            a->sums[first + k] += w->share * (double)w->values[k];
-        }
-        for (size_t k = 0; k < place.values && a->direct != NULL; k++) {
-            a->direct->pixels[first + k] += (float)w->share * w->values[place.values + k];
-        }
-        a->weights[band] += w->share;
-        vplFree(a->context, w->values);
-        w->values = NULL;
     }
+    return first;
+}
+
+static bool waits(const vplAssembly* a, size_t at, int index)
+{
+    return at < a->waitingCount && a->waiting[at].index == index;
+}
+
+// Adds a pass whose turn it is, and frees its values.
+static void addPass(vplAssembly* a, const vplWaiting* w)
+{
+    const vplPiecePlace place = vplPieceGrid_Place(&a->first.grid, w->index);
+    const size_t first = 3 * (size_t)place.firstRow * (size_t)a->first.grid.width;
+    for (size_t k = 0; k < place.values; k++) {
+        a->sums[first + k] += w->share * (double)w->values[k];
+    }
+    for (size_t k = 0; k < place.values && a->direct != NULL; k++) {
+        a->direct->pixels[first + k] += (float)w->share * w->values[place.values + k];
+    }
+    a->weights[place.band] += w->share;
+    a->next[place.band]++;
+    vplFree(a->context, w->values);
+}
+
+// Adds a pass and those of its band that waited for it, or lets it wait. There is room for it.
+static void addOrWait(vplAssembly* a, const vplWaiting* w)
+{
+    const vplPiecePlace place = vplPieceGrid_Place(&a->first.grid, w->index);
+    const size_t at = findWaiting(a, w->index), behind = a->waitingCount - at;
+    if (place.pass > a->next[place.band]) {
+        memmove(&a->waiting[at + 1], &a->waiting[at], behind * sizeof *w);
+        a->waiting[at] = *w;
+        a->waitingCount++;
+        return;
+    }
+    size_t added = 0;
+    addPass(a, w);
+    while (waits(a, at + added,
+                 w->index + 1 + (int)added)) { // never of another band, whose pass 0 does not wait
+        addPass(a, &a->waiting[at + added]);
+        added++;
+    }
+    memmove(&a->waiting[at], &a->waiting[at + added], (behind - added) * sizeof *w);
+    a->waitingCount -= added;
 }
 
 bool vplAssembly_Has(const vplAssembly* a, int index)
@@ -140,7 +173,17 @@ bool vplAssembly_Has(const vplAssembly* a, int index)
     }
     const vplPieceGrid* g = &a->first.grid;
     return index >= 0 && index < g->count &&
-           (index % g->passes < a->next[index / g->passes] || a->waiting[index].values != NULL);
+           (index % g->passes < a->next[index / g->passes] || waits(a, findWaiting(a, index), index));
+}
+
+// True if the sum of two such values is a float.
+static bool areSmall(const float* values, size_t count)
+{
+    bool small = true;
+    for (size_t k = 0; k < count; k++) {
+        small = small && fabsf(values[k]) <= FLT_MAX / 2;
+    }
+    return small;
 }
 
 // Takes the floats of a piece over.
@@ -150,9 +193,13 @@ static vplResult take(vplAssembly* a, const vplPieceHeader* h, const uint8_t* by
     vplStream s = {.bytes = (uint8_t*)bytes, .at = VPL_PIECE_HEADER_BYTES, .finite = true};
     const size_t first = 3 * (size_t)place.firstRow * (size_t)h->grid.width;
     const size_t count = place.values * (1 + (size_t)h->splits);
-    float* values = h->mean ? vplAlloc(a->context, count, sizeof *values) : NULL;
-    if (h->mean && values == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    float* values = NULL;
+    if (h->mean) {
+        TRY(vplReserve(a->context, &a->waiting, &a->waitingRoom, a->waitingCount + 1, sizeof *a->waiting));
+        values = vplAlloc(a->context, count, sizeof *values);
+        if (values == NULL) {
+            return VPL_OUT_OF_MEMORY;
+        }
     }
     if (!h->mean || place.pass == 0) {
         vplStream_Floats(&s, a->base->pixels + first, place.values);
@@ -162,13 +209,15 @@ static vplResult take(vplAssembly* a, const vplPieceHeader* h, const uint8_t* by
     } else if (h->splits) {
         vplStream_Floats(&s, a->direct->pixels + first, place.values);
     }
-    if (!s.finite) {
+    const bool small =
+        !h->mean || (areSmall(a->base->pixels + first, place.values) && areSmall(values, count));
+    if (!s.finite || !small) {
         vplFree(a->context, values);
-        return vplFail(a->context, VPL_PARSE_ERROR, "%s: a piece has values that are no numbers", name);
+        return vplFail(a->context, VPL_PARSE_ERROR, "%s: a piece has values that are no numbers%s", name,
+                       s.finite ? " or too large" : "");
     }
-    a->waiting[h->index] = (Waiting){values, h->share};
     if (h->mean) {
-        addPasses(a, place.band);
+        addOrWait(a, &(vplWaiting){h->index, values, h->share});
     } else {
         a->next[place.band] = 1;
     }
@@ -210,75 +259,4 @@ int vplAssembly_CountMissing(const vplAssembly* a)
         return 0;
     }
     return a->missing;
-}
-
-// Names the first piece that is missing.
-static vplResult failIncomplete(const vplAssembly* a)
-{
-    const vplPieceGrid* g = &a->first.grid;
-    int index = 0;
-    while (index < g->count && vplAssembly_Has(a, index)) {
-        index++;
-    }
-    if (g->count == 0) {
-        return vplFail(a->context, VPL_INVALID_ARGUMENT, "there is no part of the picture");
-    }
-    const vplPiecePlace place = vplPieceGrid_Place(g, index);
-    return vplFail(a->context, VPL_INVALID_ARGUMENT,
-                   "%d of %d pieces of the picture are missing; the first is pass %d of rows %d to %d",
-                   a->missing, g->count, place.pass, place.firstRow, place.endRow - 1);
-}
-
-// Computes value k of a finished image from the sums of the passes and their total weight, by the formulas of
-// vplRenderer_GetLayers: addMean that of the picture, addDirect that of direct light alone.
-typedef float ResolveFcn(const vplAssembly* a, size_t k, double weight);
-
-static float addMean(const vplAssembly* a, size_t k, double weight)
-{
-    return a->first.mean ? (float)((double)a->base->pixels[k] + a->sums[k] / weight) : a->base->pixels[k];
-}
-
-static float addDirect(const vplAssembly* a, size_t k, double weight)
-{
-    const float added = a->direct != NULL ? a->direct->pixels[k] : 0;
-    return a->first.mean ? a->base->pixels[k] + added / (float)weight : added;
-}
-
-static vplResult resolve(const vplAssembly* a, ResolveFcn* valueOf, vplImage** imageOut)
-{
-    const vplPieceGrid* g = &a->first.grid;
-    TRY(vplImage_Create(a->context, g->width, g->height, imageOut));
-    for (int band = 0; band < g->bands; band++) {
-        const vplPiecePlace place = vplPieceGrid_Place(g, band * g->passes);
-        const size_t first = 3 * (size_t)place.firstRow * (size_t)g->width;
-        for (size_t k = first; k < first + place.values; k++) {
-            (*imageOut)->pixels[k] = valueOf(a, k, a->weights[band]);
-        }
-    }
-    return VPL_SUCCESS;
-}
-
-vplResult vplAssembly_GetImage(const vplAssembly* a, vplImage** imageOut)
-{
-    REQUIRE(CONTEXT_OF(a), a, imageOut);
-    if (a->first.grid.count == 0 || a->missing > 0) {
-        return failIncomplete(a);
-    }
-    return resolve(a, addMean, imageOut);
-}
-
-vplResult vplAssembly_GetLayers(const vplAssembly* assembly, vplRenderer* renderer, vplLayers** layersOut)
-{
-    REQUIRE(vplRenderer_ContextOf(renderer) ?: CONTEXT_OF(assembly), assembly, renderer, layersOut);
-    vplImage *picture = NULL, *direct = NULL;
-    TRY(vplAssembly_CheckRenderer(assembly, renderer));
-    TRY(vplRunner_RunPlan(&renderer->runner, renderer->plan, VPL_STAGE_GEOMETRY));
-    TRY(vplAssembly_GetImage(assembly, &picture));
-    const vplResult result =
-        renderer->plan->splitsLight ? resolve(assembly, addDirect, &direct) : VPL_SUCCESS;
-    if (result != VPL_SUCCESS) {
-        vplImage_Destroy(picture);
-        return result;
-    }
-    return vplMakeLayers(&renderer->runner.run, picture, direct, layersOut);
 }

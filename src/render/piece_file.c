@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "render/piece_file.h"
 
-#include "base/context.h"
+#include "base/arena.h" // TRY
 
-#include <math.h>
 #include <string.h>
 
 enum { VERSION = 1, MEAN = 1, SPLITS = 2 };
+
+static const double LEAST_SHARE = 1.0 / VPL_MAX_LIGHTS; // of a pass of one particle
 
 static const char MAGIC[8] = {'V', 'P', 'L', 'P', 'I', 'E', 'C', 'E'};
 
@@ -70,17 +71,17 @@ static bool isPlausible(vplPieceHeader* h)
     vplPieceGrid* g = &h->grid;
     const bool sizes = g->width >= 1 && g->width <= VPL_MAX_IMAGE_SIZE && g->height >= 1 &&
                        g->height <= VPL_MAX_IMAGE_SIZE && g->rows >= 1 && g->rows <= 2 * VPL_MAX_IMAGE_SIZE &&
-                       g->passes >= 1;
+                       g->passes >= 1 && g->passes <= VPL_MAX_PASSES;
     if (!sizes || g->bands != (g->height + g->rows - 1) / g->rows || g->passes > INT32_MAX / g->bands) {
         return false;
     }
     g->count = g->passes * g->bands;
-    return h->index >= 0 && h->index < g->count && isfinite(h->share) && h->share > 0 && h->share <= 1 &&
+    return h->index >= 0 && h->index < g->count && h->share >= LEAST_SHARE && h->share <= 1 &&
            (h->mean || g->passes == 1);
 }
 
-vplResult vplPiece_Read(const vplContext* context, const uint8_t* bytes, size_t size, const char* name,
-                        vplPieceHeader* headerOut)
+vplResult vplPiece_ReadHeader(const vplContext* context, const uint8_t* bytes, size_t size, const char* name,
+                              vplPieceHeader* headerOut)
 {
     vplStream s = {.bytes = (uint8_t*)bytes, .finite = true};
     vplPieceHeader h = {.index = 0};
@@ -103,8 +104,18 @@ vplResult vplPiece_Read(const vplContext* context, const uint8_t* bytes, size_t 
                        "%s: ends within a piece, which has %zu bytes of %zu: it is not complete", name, size,
                        whole);
     }
+    *headerOut = h;
+    return VPL_SUCCESS;
+}
+
+vplResult vplPiece_Read(const vplContext* context, const uint8_t* bytes, size_t size, const char* name,
+                        vplPieceHeader* headerOut)
+{
+    vplPieceHeader h;
     uint64_t checksum = 0;
-    s.at = whole - VPL_PIECE_CHECKSUM_BYTES;
+    TRY(vplPiece_ReadHeader(context, bytes, size, name, &h));
+    const size_t whole = vplPiece_Size(&h);
+    vplStream s = {.bytes = (uint8_t*)bytes, .at = whole - VPL_PIECE_CHECKSUM_BYTES, .finite = true};
     vplStream_Long(&s, &checksum);
     if (checksum != vplState_Checksum(bytes, whole - VPL_PIECE_CHECKSUM_BYTES)) {
         return vplFail(context, VPL_PARSE_ERROR, "%s: the checksum of a piece does not fit: it is damaged",

@@ -36,6 +36,10 @@ size_t vplPiece_Size(const vplPieceHeader* header);
 // Writes or reads the header at the front of a stream.
 void vplPiece_StreamHeader(vplStream* stream, vplPieceHeader* header);
 
+// Reads the header at the front of `bytes`, of a piece that is there as a whole.
+vplResult vplPiece_ReadHeader(const vplContext* context, const uint8_t* bytes, size_t size, const char* name,
+                              vplPieceHeader* headerOut);
+
 // Reads and checks the piece at the front of `bytes`.
 vplResult vplPiece_Read(const vplContext* context, const uint8_t* bytes, size_t size, const char* name,
                         vplPieceHeader* headerOut);
