@@ -58,7 +58,7 @@ units_and_pictures() {
         echo "wrong arguments: skipped, need python3"
     fi
     count "golden pictures" "$build/vpl-golden" check golden "$build/golden"
-    count "interrupts" tests/signals.sh "$build/vpl" 20
+    count "interrupts" tests/signals.sh "$build/vpl"
     count "project" tests/project.sh "$build"
 }
 

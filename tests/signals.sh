@@ -9,7 +9,8 @@ case $1 in
 /*) vpl=$1 ;;
 *) vpl=$PWD/$1 ;;
 esac
-count=${2:-20}
+commands=27
+count=${2:-$commands}
 seed=${3:-1}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -62,27 +63,78 @@ words_of() {
     16) echo "compare $scratch/big.pfm $scratch/big.pfm --heatmap $out/h.png --heatmap-of flip" ;;
     17) echo "render $point -o $out/a.png --method direct --size 4000x3000 --supersample 4" ;;
     18) echo "render $point -o $out/a.pfm --resume $scratch/silent --method path" ;;
+    19) echo "merge $scratch/big.part -o $out/a.png" ;;
+    20) echo "merge $scratch/silent -o $out/a.pfm" ;;
+    21) echo "render $room -o $out/a.part --tile 2/3 --method path --spp 200 --size 640x400" ;;
+    22) echo "render $scratch/big.obj -o $out/a.png --method keller" ;;
+    23) echo "render $scratch/big.ply -o $out/a.pfm --method direct --antialias 8" ;;
+    24) echo "render $PWD/tests/data/gltf/everything.gltf -o $out/a.png --method keller --passes 50" ;;
+    25) echo "render $PWD/examples/scenes/textured-room.json -o $out/a.hdr --method path --spp 400" ;;
     *) echo "render $PWD/examples/scenes/loft.json -o $out/a.png --method keller --quality good" ;;
     esac
 }
 
-# True if all files are whole: none temporary, pictures and JSON readable.
+# ends_with TEXT FILE: true if the last line of the file ends with the text.
+ends_with() {
+    tail -n 1 "$2" | grep -q "$1\$" && [ "$(tail -c 1 "$2" | od -An -tx1)" = " 0a" ]
+}
+
+# is_file_whole FILE: true if the program reads it, or if its end is there.
+is_file_whole() {
+    case $1 in
+    *.png) "$vpl" compare "$1" "$1" && [ "$(tail -c 4 "$1" | od -An -tx1)" = " ae 42 60 82" ] ;; # of its last chunk
+    *.pfm | *.hdr | *.exr) "$vpl" compare "$1" "$1" ;;
+    *.json) [ "$(tail -c 2 "$1" | tr -d '\n')" = "}" ] ;;
+    *.ply) "$vpl" info "$1" ;;
+    */state) "$vpl" render "$room" -o "$scratch/resumed.pfm" --budget 1 --resume "$1" ;;
+    *.part) "$vpl" merge "$1" -o "$scratch/merged.pfm" 2>&1 | grep "pieces of the picture are missing" ;;
+    *.html) ends_with "</html>" "$1" ;;
+    *.svg) ends_with "</svg>" "$1" ;;
+    *.csv) ends_with "" "$1" && awk -F, 'NR == 1 { columns = NF } NF < columns { bad = 1 } END { exit bad }' "$1" ;;
+    *) false ;; # a kind of file that this test does not know
+    esac >"$scratch/log" 2>&1
+}
+
+# True if all files are whole and none is temporary.
 is_whole() {
     [ -z "$(find "$out" "$scratch/cache" -name '*.tmp')" ] || return 1
-    for file in "$out"/*.png "$out"/*.pfm "$out"/*.hdr "$out"/*.exr; do
-        [ ! -e "$file" ] || "$vpl" compare "$file" "$file" >"$scratch/log" 2>&1 || return 1
-    done
-    for file in "$out"/*.json; do
-        [ ! -e "$file" ] || [ "$(tail -c 2 "$file" | tr -d '\n')" = "}" ] || return 1
+    for file in $(find "$out" -type f); do
+        is_file_whole "$file" || return 1
     done
     return 0
 }
 
+# Writes a hilly ground of 80,000 triangles: hills obj|ply
+hills() {
+    awk -v kind="$1" 'BEGIN {
+        n = 200
+        if (kind == "ply") {
+            printf "ply\nformat ascii 1.0\nelement vertex %d\n", (n + 1) * (n + 1)
+            print "property float x\nproperty float y\nproperty float z"
+            printf "element face %d\nproperty list uchar int vertex_indices\nend_header\n", n * n
+        }
+        for (i = 0; i <= n; i++) {
+            for (j = 0; j <= n; j++) {
+                printf "%s%g %g %g\n", kind == "obj" ? "v " : "", i / n, 0.1 * sin(i / 9) * sin(j / 9), j / n
+            }
+        }
+        for (i = 0; i < n; i++) {
+            for (j = 0; j < n; j++) {
+                at = i * (n + 1) + j + (kind == "obj")
+                printf "%s %d %d %d %d\n", kind == "obj" ? "f" : 4, at, at + 1, at + n + 2, at + n + 1
+            }
+        }
+    }'
+}
+
 "$vpl" render "$point" --method direct --size 1500x1000 -o "$scratch/big.pfm" --quiet
+"$vpl" render "$point" --method direct --size 1500x1000 -o "$scratch/big.part" --tile 1/1 --quiet
+hills obj >"$scratch/big.obj"
+hills ply >"$scratch/big.ply"
 mkfifo "$scratch/silent"
 tried=0
 while [ "$tried" -lt "$count" ]; do
-    words=$(words_of $((tried % 20)))
+    words=$(words_of $((tried % commands)))
     tried=$((tried + 1))
     rm -rf "$out"
     mkdir "$out"
