@@ -110,34 +110,55 @@ static bool stopLoadingAt(const vplScene* scene, vplRenderOptions o, int at, con
     stop.at = 0; // the rest is not stopped
     const Seen first = look(r, NULL);
     assertSeenSame(&first, loaded);
-    stepToEnd(r);
+    while (!done) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
     const Seen end = look(r, NULL);
     assertSeenSame(&end, last);
     vplRenderer_Destroy(r);
     return stopped;
 }
 
+// Saves a render after so many passes, and stops its loading at the first calls and at growing distances after them.
+static void stopLoading(const vplScene* scene, const vplRenderOptions* o, int saved)
+{
+    char path[128];
+    Seen passes[MOST_PASSES + 1];
+    vplRenderStats stats;
+    bool ended;
+    int at = 1;
+    renderPasses(scene, o, passes, &stats);
+    snprintf(path, sizeof path, "%s", temporaryName(".state"));
+    saveAfter(scene, o, saved, path, &ended);
+    while (stopLoadingAt(scene, *o, at, &passes[saved], &passes[MOST_PASSES], path)) {
+        at += 1 + at / 6;
+    }
+    assert_true(at > 2);
+    unlink(path);
+}
+
 TEST_ALONE(AStateWhoseReadingIsCancelledIsReadAgain)
 {
     for (int i = 0; i < PASS_CASES; i++) {
-        char path[128];
         vplContext* context = openTestContext(1);
         vplScene* scene;
-        Seen passes[MOST_PASSES + 1];
-        bool ended;
         const vplRenderOptions o = passCase(context, i, &scene);
-        renderPasses(scene, &o, passes, NULL);
-        snprintf(path, sizeof path, "%s", temporaryName(".state"));
-        saveAfter(scene, &o, 2, path, &ended);
-        int at = 1;
-        while (stopLoadingAt(scene, o, at, &passes[2], &passes[MOST_PASSES], path)) {
-            at += 1 + at / 6;
-        }
-        assert_true(at > 2);
-        unlink(path);
+        stopLoading(scene, &o, 2);
         vplScene_Destroy(scene);
         closeTestContext(context);
     }
+}
+
+// They are traced again after all else was loaded.
+TEST_ALONE(AStateWhosePixelsAtEdgesAreCancelledIsReadAgain)
+{
+    vplContext* context = openTestContext(1);
+    vplScene* scene;
+    vplRenderOptions o = passCase(context, 2, &scene);
+    assert_int_equal(vplRenderOptions_SetAll(&o, "--edge-pixels 60 --spp 8"), VPL_SUCCESS);
+    stopLoading(scene, &o, MOST_PASSES);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
 }
 
 // A host's tasks cannot be stopped: all of a pass is done before it is cancelled.

@@ -2,9 +2,10 @@
 // Tests of saved renders: the same bits as one that was never stopped, and files that are wrong in every way.
 #include "pass_cases.h"
 
+#include "base/bytes.h"
 #include "base/file.h"
 #include "render/renderer.h"
-#include "render/state_stream.h"
+#include "render/state_file.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -161,6 +162,46 @@ static void writeState(const uint8_t* bytes, size_t size)
     assert_non_null(file);
     assert_true(fwrite(bytes, 1, size, file) == size);
     fclose(file);
+}
+
+// Replaces bytes of the saved state and makes its checksum right.
+static void forge(vplContext* context, size_t at, const void* with, size_t count)
+{
+    char* bytes;
+    size_t size;
+    assert_int_equal(vplReadFile(context, stateFile(), &bytes, &size), VPL_SUCCESS);
+    memcpy(bytes + at, with, count);
+    vplStream s = {.bytes = (uint8_t*)bytes, .at = size - 8, .writes = true};
+    uint64_t sum = vplState_Checksum(s.bytes, size - 8);
+    vplStream_Long(&s, &sum);
+    writeState(s.bytes, size);
+    vplFree(context, bytes);
+}
+
+// Else the picture would have an infinity, and the pixels at edges are chosen by their differences. Cases: the first sum of
+// paths, which is not negative, and direct light of passes, to which their mean is added.
+TEST_ALONE(SumsThatNoPictureHasAreRefused)
+{
+    static const double negative = -1;
+    static const float huge = 3e38f;
+    for (int i = 0; i < 4; i += 2) {
+        vplContext* context = openTestContext(1);
+        vplScene* scene;
+        const vplRenderOptions o = passCase(context, i, &scene);
+        uint32_t textBytes;
+        char* bytes;
+        size_t size;
+        savePasses(scene, &o, 1);
+        assert_int_equal(vplReadFile(context, stateFile(), &bytes, &size), VPL_SUCCESS);
+        textBytes = vplTakeWord((uint8_t*)bytes + 12);
+        vplFree(context, bytes);
+        const void* with = i == 0 ? (const void*)&negative : &huge;
+        forge(context, VPL_STATE_HEADER_BYTES + textBytes, with, i == 0 ? sizeof negative : sizeof huge);
+        assertNotLoaded(scene, &o, VPL_PARSE_ERROR, "has sums that no picture has");
+        unlink(stateFile());
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
 }
 
 // Every length from 0, and a bit flipped in every byte; with a right checksum, too, so that checks behind it

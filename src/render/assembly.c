@@ -176,12 +176,12 @@ bool vplAssembly_Has(const vplAssembly* a, int index)
            (index % g->passes < a->next[index / g->passes] || waits(a, findWaiting(a, index), index));
 }
 
-// True if the sum of two such values is a float.
+// True if the sum of two such values is a float, also where rounding has added to them.
 static bool areSmall(const float* values, size_t count)
 {
     bool small = true;
     for (size_t k = 0; k < count; k++) {
-        small = small && fabsf(values[k]) <= FLT_MAX / 2;
+        small = small && fabsf(values[k]) <= FLT_MAX / 4;
     }
     return small;
 }

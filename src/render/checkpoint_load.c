@@ -221,6 +221,13 @@ static vplResult loadState(Loading* l)
     if (!l->stream.finite) {
         return vplFail(r->runner.run.context, VPL_PARSE_ERROR, "%s: has sums that are no numbers", l->path);
     }
+    double weight = 0;
+    for (int k = 0; k < (int)h->passes && weight < 1e9; k++) {
+        weight += vplShareOfPass(r->plan, k);
+    }
+    if (!vplState_AreSumsValid(r, h->parts, weight)) {
+        return vplFail(r->runner.run.context, VPL_PARSE_ERROR, "%s: has sums that no picture has", l->path);
+    }
     for (int i = 0; i < vplState_CountTracers(h->parts); i++) {
         vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
         vplPathTracer_SetSamples(tracer, (int)h->samples);
@@ -229,9 +236,7 @@ static vplResult loadState(Loading* l)
     r->runner.loss = (vplClampLoss){h->loss[0], h->loss[1]};
     r->done = (int)h->passes;
     r->paths = (int)h->samples;
-    for (int k = 0; k < r->done && r->weight < 1e9; k++) {
-        r->weight += vplShareOfPass(r->plan, k);
-    }
+    r->weight = weight;
     r->edgeTries = (int)h->tries;
     r->coarserSquare = h->coarser;
     r->lightRays = h->lights;
@@ -270,6 +275,27 @@ static vplResult load(Loading* l)
     return result;
 }
 
+// Leaves the renderer before its first step, which would add to what was loaded.
+static void takeBack(const Loading* l)
+{
+    vplRenderer* r = l->renderer;
+    const int tracers = r->done > 0 ? vplState_CountTracers(l->header.parts) : 0;
+    for (int i = 0; i < tracers; i++) {
+        vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
+        vplPathTracer_SetSamples(tracer, 0);
+        vplPathTracer_SetRays(tracer, 0);
+    }
+    vplRenderer_ForgetEdges(r);
+    vplImage_Destroy(r->direct);
+    vplTruth_Destroy(r->truth);
+    r->direct = NULL;
+    r->truth = NULL;
+    r->runner.loss = (vplClampLoss){0, 0};
+    r->done = r->paths = r->edgeTries = 0;
+    r->weight = r->coarserSquare = r->lightRays = 0;
+    r->stale = false;
+}
+
 vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
 {
     REQUIRE(vplRenderer_ContextOf(r), r, path, doneOut);
@@ -287,11 +313,8 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
     l.stream.bytes = (uint8_t*)bytes;
     result = load(&l);
     vplFree(context, bytes);
-    if (result != VPL_SUCCESS) { // the first pass would add to it; it makes all else anew
-        vplImage_Destroy(r->direct);
-        r->direct = NULL;
-        vplTruth_Destroy(r->truth);
-        r->truth = NULL;
+    if (result != VPL_SUCCESS) {
+        takeBack(&l);
         return result;
     }
     if (r->done == 0) { // callers may ask for the picture of what was loaded

@@ -6,6 +6,9 @@
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
+#include <float.h>
+#include <math.h>
+
 // Bytes of a pixel of the truth, and of what was concluded from them (vplState_StreamTruth).
 enum { TRUTH_PIXEL_BYTES = 80, TRUTH_BYTES = 40 };
 
@@ -112,6 +115,43 @@ void vplState_StreamTruth(vplStream* s, vplRenderer* r)
         vplStream_Doubles(s, &t.pixels[i].squares, 1);
     }
     vplTruth_SetPaths(r->truth, (int)each);
+}
+
+// True if all values lie in [least, most].
+static bool areBetween(const double* values, size_t count, double least, double most)
+{
+    bool between = true;
+    for (size_t k = 0; k < count; k++) {
+        between = between && values[k] >= least && values[k] <= most;
+    }
+    return between;
+}
+
+static bool areSmall(const float* values, size_t count, double most)
+{
+    bool small = true;
+    for (size_t k = 0; k < count; k++) {
+        small = small && fabs((double)values[k]) <= most;
+    }
+    return small;
+}
+
+bool vplState_AreSumsValid(const vplRenderer* r, uint32_t parts, double weight)
+{
+    const double most = (double)FLT_MAX / 4; // light of the first pass and the mean of all are added
+    bool valid = true;
+    for (int i = 0; i < vplState_CountTracers(parts); i++) {
+        const vplPathSums sums = vplPathTracer_GetSums(vplGetPathTracer(&r->runner.run, i > 0));
+        valid = valid && areBetween(sums.values, sums.count, 0, DBL_MAX / 4);
+    }
+    if ((parts & VPL_STATE_PASSES) != 0) {
+        const size_t values = vplValueCount(r->base);
+        valid = valid && areSmall(r->base->pixels, values, most) &&
+                areBetween(r->sums[0], values, -most * weight, most * weight) &&
+                areBetween(r->sums[1], values, 0, DBL_MAX / 4) &&
+                ((parts & VPL_STATE_DIRECT) == 0 || areSmall(r->direct->pixels, values, most * weight));
+    }
+    return valid;
 }
 
 bool vplState_IsTruthValid(const vplRenderer* r)

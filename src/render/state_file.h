@@ -66,6 +66,9 @@ void vplState_StreamSums(vplStream* s, vplRenderer* r, uint32_t parts);
 // Writes or reads what was found of the error so far, on which it depends when the render ends.
 void vplState_StreamTruth(vplStream* s, vplRenderer* r);
 
+// True if passes of this weight can have what was read of their sums: the picture is finite.
+bool vplState_AreSumsValid(const vplRenderer* r, uint32_t parts, double weight);
+
 // True if what was read of the truth lies in the picture and has plausible counts.
 bool vplState_IsTruthValid(const vplRenderer* r);
 
