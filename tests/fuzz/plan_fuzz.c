@@ -1,14 +1,80 @@
 // SPDX-License-Identifier: MIT
 // Passes arbitrary bytes as a plan file: the reader must either log one sentence with file, line and column,
-// or set options, all in their ranges.
+// or set options, all in their ranges. With little work and a tiny scene these make a plan, whose list of options makes the
+// same list again.
 #define _GNU_SOURCE
-#include "fuzz.h"
+#include "valid.h"
+
+#include "render/replay.h"
 
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #define FOLDER "/proc/self/fd/"
+
+// A floor under a lamp.
+static vplScene* makeScene(vplContext* context)
+{
+    vplScene* scene;
+    vplMaterialDef material = vplDefaultMaterialDef();
+    vplObjectDef object = vplDefaultObjectDef();
+    vplCameraDef camera = vplDefaultCameraDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    emitter.position = (vplVec3){0, 0, 2};
+    MUST(vplScene_Create(context, &scene) == VPL_SUCCESS);
+    MUST(vplScene_AddMaterial(scene, &material, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddObject(scene, &object, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddCamera(scene, &camera, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddEmitter(scene, &emitter, NULL) == VPL_SUCCESS);
+    return scene;
+}
+
+// Plans, and lists the options that make the plan again. Returns false where the render is refused.
+static bool listPlan(const vplScene* scene, const vplRenderOptions* options, vplByteBuffer* text)
+{
+    vplPlan* plan;
+    *text = (vplByteBuffer){.context = vplScene_GetContext(scene)};
+    if (vplPlan_Create(scene, options, NULL, &plan) != VPL_SUCCESS) {
+        return false;
+    }
+    const bool renders = plan->problem[0] == 0;
+    vplReplayList(plan, text);
+    vplByteBuffer_Append(text, "", 1);
+    MUST(!text->failed);
+    vplPlan_Destroy(plan);
+    return renders;
+}
+
+// Sets the options of a list, which it overwrites.
+static vplRenderOptions readList(char* list)
+{
+    vplRenderOptions options = vplDefaultRenderOptions();
+    for (char* line = strtok(list, "\n"); line != NULL; line = strtok(NULL, "\n")) {
+        char* equals = strchr(line, '=');
+        MUST(equals != NULL);
+        *equals = 0;
+        MUST(vplRenderOptions_Set(&options, line, equals + 1) == VPL_SUCCESS);
+    }
+    return options;
+}
+
+static void replay(vplContext* context, vplRenderOptions options)
+{
+    vplScene* scene = makeScene(context);
+    vplByteBuffer first, second = {.bytes = NULL};
+    MUST(vplRenderOptions_SetAll(&options, SMALL " --quality none --budget 0 --max-error 0") == VPL_SUCCESS);
+    if (listPlan(scene, &options, &first)) {
+        char* list = strdup((char*)first.bytes);
+        MUST(list != NULL);
+        const vplRenderOptions again = readList(list);
+        MUST(listPlan(scene, &again, &second) && strcmp((char*)first.bytes, (char*)second.bytes) == 0);
+        free(list);
+    }
+    vplFree(context, first.bytes);
+    vplFree(context, second.bytes);
+    vplScene_Destroy(scene);
+}
 
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
 {
@@ -33,6 +99,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
                  (vplRenderOptions_Get(&options, rows[i].name, text, sizeof text) == VPL_SUCCESS &&
                   vplRenderOptions_Set(&options, rows[i].name, text) == VPL_SUCCESS));
         }
+        replay(context, options);
     } else {
         int line, column, used = 0;
         MUST(result == VPL_PARSE_ERROR && log.errors == 1 && memcmp(&options, &before, sizeof options) == 0);

@@ -243,13 +243,7 @@ static vplScene* makeScene(vplContext* context, Bytes* b, FuzzLog* log)
 
 // ---- options
 
-// Small work by default, and the largest values of options that make work. The time and memory of the others is bounded.
-#define SMALL                                                                                                \
-    "--size 8x6 --shadow-map 16 --particles 6 --spp 2 --area-light-samples 4 --sky-samples 4 --light-map 8 " \
-    "--rsm-size 8 "                                                                                          \
-    "--clusters 4 --first-bounce 12 --second-bounce 12 --paraboloid 8 --patches 30 --form-samples 2 "        \
-    "--iterations 10 --oversampling 2 --pcf 4 --subdivisions 6 --max-bounces 8 --passes 1"
-
+// The largest values of options that make work. The time and memory of the others is bounded.
 static const struct {
     const char* name;
     double most; // 0: not touched
