@@ -64,7 +64,8 @@ TEST(ASymmetricRoomIsAsBrightOnTheLeftAsOnTheRight, 2)
     static const struct {
         int points;
         double above[LAMPS], along; // most that one half may be brighter
-    } cases[] = {{16, {1e-6, 1e-3, 1e-6}, 0.02}, {64, {1e-6, 1e-3, 1e-6}, 8e-3}, {256, {1e-6, 1e-4, 1e-6}, 2e-3}};
+    } cases[] = {
+        {16, {1e-6, 1e-3, 1e-6}, 0.02}, {64, {1e-6, 1e-3, 1e-6}, 8e-3}, {256, {1e-6, 1e-4, 1e-6}, 2e-3}};
     for (int i = 0; i < 3; i++) {
         for (int lamps = 0; lamps < LAMPS; lamps++) {
             assertNear(excess(context, lamps, true, cases[i].points), 0, cases[i].above[lamps], "from above",
