@@ -107,7 +107,8 @@ static void readCodes(Stream* s, Code* lengths, Code* distances)
 {
     static const uint8_t order[19] = {16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15};
     uint8_t bits[LENGTH_CODES + 32] = {0};
-    const int lengthCount = readBits(s, 5) + 257, distanceCount = readBits(s, 5) + 1, count = readBits(s, 4) + 4;
+    const int lengthCount = readBits(s, 5) + 257, distanceCount = readBits(s, 5) + 1,
+              count = readBits(s, 4) + 4;
     for (int i = 0; i < count; i++) {
         bits[order[i]] = (uint8_t)readBits(s, 3);
     }
@@ -134,7 +135,8 @@ static void readCodes(Stream* s, Code* lengths, Code* distances)
 // Copies bytes that were written before. Codes of lengths and distances come in groups with one more bit each.
 static void copyBack(Stream* s, int symbol, const Code* distances)
 {
-    static const uint8_t more[29] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 0};
+    static const uint8_t more[29] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2,
+                                     2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 0};
     int length = 3, distance = 1;
     if (symbol - 257 > 28) {
         s->broken = true;
@@ -203,6 +205,7 @@ long inflateBytes(const uint8_t* in, size_t size, uint8_t* out, size_t capacity)
     if (s.broken || s.at + 4 != size) {
         return -1;
     }
-    const uint32_t sum = (uint32_t)in[s.at] << 24 | (uint32_t)in[s.at + 1] << 16 | (uint32_t)in[s.at + 2] << 8 | in[s.at + 3];
+    const uint32_t sum =
+        (uint32_t)in[s.at] << 24 | (uint32_t)in[s.at + 1] << 16 | (uint32_t)in[s.at + 2] << 8 | in[s.at + 3];
     return sum == adler(out, s.count) ? (long)s.count : -1;
 }

@@ -102,9 +102,11 @@ static void getChunk(Exr* x, int y)
     }
     x->at += size;
     for (size_t i = 0, k = 0; k < wanted; i++, k += 4) { // row by row, in each channel by channel
-        const size_t row = i / (size_t)(x->width * x->channelCount), channel = i / (size_t)x->width % (size_t)x->channelCount;
+        const size_t row = i / (size_t)(x->width * x->channelCount),
+                     channel = i / (size_t)x->width % (size_t)x->channelCount;
         x->values[channel][((size_t)y + row) * (size_t)x->width + i % (size_t)x->width] =
-            (uint32_t)raw[k] | (uint32_t)raw[k + 1] << 8 | (uint32_t)raw[k + 2] << 16 | (uint32_t)raw[k + 3] << 24;
+            (uint32_t)raw[k] | (uint32_t)raw[k + 1] << 8 | (uint32_t)raw[k + 2] << 16 |
+            (uint32_t)raw[k + 3] << 24;
     }
 }
 
@@ -148,8 +150,8 @@ static void checkChannel(const Exr* x, const char* name, const vplImage* image, 
             memcpy(&bits, &image->pixels[3 * i + k], 4);
         }
         if (bits != x->values[c][i]) {
-            fail_msg("picture %d of %dx%d pixels, pixel %d, %s: %08x instead of %08x", n, image->width, image->height, i, name,
-                     x->values[c][i], bits);
+            fail_msg("picture %d of %dx%d pixels, pixel %d, %s: %08x instead of %08x", n, image->width,
+                     image->height, i, name, x->values[c][i], bits);
         }
     }
 }
@@ -211,7 +213,8 @@ TEST(ASecondReaderFindsEveryLayer, 1)
                                     {.name = "normal", .kind = VPL_LAYER_VECTOR, .image = images[1]},
                                     {.name = "depth", .kind = VPL_LAYER_NUMBER, .image = images[2]},
                                     {.name = "object", .kind = VPL_LAYER_INDEX, .image = images[3]}};
-        static const char* const names[8] = {"R", "G", "B", "normal.X", "normal.Y", "normal.Z", "depth", "object"};
+        static const char* const names[8] = {"R",        "G",        "B",     "normal.X",
+                                             "normal.Y", "normal.Z", "depth", "object"};
         uint8_t* bytes;
         size_t size;
         assert_int_equal(vplImage_EncodeLayers(layers, 4, &bytes, &size), VPL_SUCCESS);

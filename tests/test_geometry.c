@@ -55,6 +55,7 @@ static void allowFlip(const Table* t, int row, bool found)
     }
 }
 
+// X001, X004, X006, X007, X009 to X011, X013 to X016, X018, X019
 // All columns but a and b (the box's entry and exit: t_strict is the one of them that is hit) and t_doc, the
 // printed rule, from which vplRay_HitBox departs.
 TEST(EveryRayQuadVerdictOfTheTable, 1)
@@ -102,6 +103,7 @@ TEST(EveryRayQuadVerdictOfTheTable, 1)
     freeTable(&t);
 }
 
+// X002, X004 to X006, X020 to X028
 TEST(EveryRayBoxVerdictOfTheTable, 1)
 {
     Table t = loadTable("ray_box.csv");
@@ -237,7 +239,7 @@ TEST(EveryRayOfTheRoomMeetsTheObjectOfTheTable, 1)
     vplGeometry_Destroy(room);
 }
 
-// X003, X004: scales of any magnitude have a usable inverse.
+// X002 to X004: scales of any magnitude have a usable inverse.
 TEST(AnyUniformScaleGivesTheSameHit, 1)
 {
     const float scales[] = {1, 1e-13f, 1e-6f, 1e6f, 1e12f};
@@ -300,7 +302,7 @@ TEST(AmongEqualDistancesTheLowestObjectWins, 1)
     vplScene_Destroy(scene);
 }
 
-// X022, X031: a particle that bounces inside a box hits the box's other faces, and one that leaves never hits
+// X021 to X023, X031: a particle that bounces inside a box hits the box's other faces, and one that leaves never hits
 // it again.
 TEST(ABoxIsLeftOrCrossedFromItsOwnFace, 1)
 {

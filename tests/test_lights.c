@@ -8,6 +8,7 @@
 
 #include <stdlib.h>
 
+// X032 to X035
 TEST(EveryCountOfTheTableIsTheDecimalOne, 1)
 {
     Table t = loadTable("counts.csv");
@@ -28,6 +29,7 @@ TEST(EveryCountOfTheTableIsTheDecimalOne, 1)
     freeTable(&t);
 }
 
+// X034
 TEST(EveryTotalOfTheTable, 1)
 {
     Table t = loadTable("counts_totals.csv");
@@ -158,6 +160,7 @@ static void checkSet(vplContext* context, const vplGeometry* room, const Table* 
     (void)context;
 }
 
+// X012, X030, X041
 TEST(EveryParticleOfTheTableLandsWhereItSays, 2)
 {
     Table t = loadTable("room_particles.csv");

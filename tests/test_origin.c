@@ -65,6 +65,7 @@ static vplScene* loadAt(vplContext* context, const double offset[3])
 // Multiples of the power of two to which the origin is rounded.
 static const double FAR[] = {1024, 1e4, 1e5, 1e6, 1e7, -3e6};
 
+// X028
 // Pictures by all methods, and the ends of the paths.
 TEST(ASceneFarAwayHasThePicturesOfTheSceneAtHome, 1, SLOW)
 {

@@ -153,6 +153,7 @@ TEST(OneSampleFormFactorsSaturateAndOursDoNot, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
+// X094
 TEST(DivergenceIsASentence, 2)
 {
     vplScene* scene = closedCubeScene(context, 0.9f, 1);
@@ -192,6 +193,7 @@ TEST(WhiteClosedRoomEndsWithAWarning, 2)
     vplScene_Destroy(scene);
 }
 
+// X092
 // ---- extremes
 
 TEST(NoLightIsBlack, 2)

@@ -48,6 +48,7 @@ TEST(DrawCallsAreThoseOfTheDocument, 2)
     vplScene_Destroy(scene);
 }
 
+// X030
 TEST(OpenRoomsKeepNominalCountsAndReportEscapes, 1)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -72,6 +73,7 @@ TEST(OpenRoomsKeepNominalCountsAndReportEscapes, 1)
     vplScene_Destroy(scene);
 }
 
+// X082
 // All pipelines, batch sizes around the group size, numbers of threads and instruction sets give the same
 // hash.
 TEST_ALONE(EveryPipelineGivesTheSameBits)
@@ -199,6 +201,7 @@ TEST(DoublingTheLightDoublesEveryPixel, 2)
     }
 }
 
+// X066
 // Physical light is scale-invariant: twice the size with four times the intensity gives the same picture, bit
 // for bit.
 TEST(TwiceTheSizeWithFourTimesTheLightIsTheSamePicture, 2)
@@ -450,7 +453,7 @@ static uint64_t oddHash(vplContext* context, vplVec3 place, vplLighting lighting
     return hash;
 }
 
-// X031, X042, X092: unusual scenes give finite pictures, and the same bits with any number of threads.
+// X031, X042, X059, X092: unusual scenes give finite pictures, and the same bits with any number of threads.
 TEST(OddScenesGiveFinitePictures, 2)
 {
     vplContext* three = openTestContext(3);

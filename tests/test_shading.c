@@ -40,6 +40,7 @@ static vplShadeLight lightAt(vplVec3 p, vplVec3 n, float colour)
     return (vplShadeLight){p.x, p.y, p.z, n.x, n.y, n.z, colour, colour, colour};
 }
 
+// X085
 TEST(EveryKernelValueOfTheTable, 1)
 {
     Table t = loadTable("vpl_kernel.csv");
@@ -88,6 +89,7 @@ TEST(EveryKernelValueOfTheTable, 1)
     freeTable(&t);
 }
 
+// X089
 // A plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), integrated over
 // 20,000 rings.
 TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
@@ -422,6 +424,7 @@ static double halfStep(double depth, double slope)
     return 0.5 * ((double)nextafterf((float)depth, 2) - (double)(float)depth) / slope;
 }
 
+// X084
 // depth_precision.csv: the camera's z/w is reversed, 1 at near and 0 at far, and what rounding hides then is the
 // table's. The other columns of steps are those of depths that are not used, and show why.
 TEST_ALONE(DepthIsReversedAndThatOfTheTable)

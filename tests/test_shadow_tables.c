@@ -4,6 +4,7 @@
 
 #include "math/vec.h"
 
+// X061, X062
 TEST(EveryShadowVerdictOfTheTable, 1)
 {
     Table t = loadTable("shadow_compare.csv");
@@ -34,6 +35,7 @@ static double exactBias(double r, double t, double a)
     return r * (1 - cos(t) / cos(fmax(t - a, 0)));
 }
 
+// X063
 // At 0 degrees the table's bias is negative, and ours 0: the next sample is no nearer.
 TEST(ExactBiasIsThatOfTheTable, 1)
 {
@@ -151,6 +153,7 @@ TEST(ExactBiasIsThatOfEveryTexelOfTheTableAndEnough, 1)
     freeTable(&t);
 }
 
+// X064
 // bias_pair.csv: the least dynamic bias is enough up to the greatest angle, which binds.
 TEST(PairsOfTheTableAreJustEnough, 1)
 {
@@ -187,6 +190,7 @@ TEST(PairsOfTheTableAreJustEnough, 1)
     freeTable(&t);
 }
 
+// X063
 // The automatic pair is b_s = alpha far and b_dmax = 5.6 b_s. Without end, finer maps need (tan t - 1) / (1 -
 // cos t), which is 5.6 at 79.9 degrees.
 TEST(AutomaticPairIsJustEnoughUpTo79Point9Degrees, 1)
@@ -209,6 +213,7 @@ TEST(AutomaticPairIsJustEnoughUpTo79Point9Degrees, 1)
     }
 }
 
+// X065
 // peter_panning.csv: the width of the light leak behind a thin wall at x0. Seen from the light at height h, the
 // floor at x lies r away and the wall r x0 / x, which every texel stores.
 TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 1)
@@ -242,6 +247,7 @@ TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 1)
     freeTable(&t);
 }
 
+// X065
 // The same with drawn maps, where the table's leak is at least twice as wide as what a texel hides.
 TEST(LightLeaksBehindADrawnWallAsFarAsTheTableSays, 2)
 {
@@ -282,6 +288,7 @@ static vplCubeMap* halfPlaneMap(vplContext* context, float edge, int size, vplGe
     return makeCubeMap(g, (vplVec3){0, 0, 0}, size);
 }
 
+// X070
 TEST(PcfGivesTheExpectationOfADisc, 2)
 {
     Table t = loadTable("pcf_halfplane.csv");
@@ -308,6 +315,7 @@ TEST(PcfGivesTheExpectationOfADisc, 2)
     freeTable(&t);
 }
 
+// X070
 // pcf_grid.csv: the table's own offsets replace ours, and counts must be exact, also where a sample falls on the
 // edge: lengths are such that the edge then lies between two texels.
 TEST(PcfCountsTheGridsOfTheTable, 2)
