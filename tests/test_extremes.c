@@ -137,6 +137,30 @@ TEST_ALONE(EveryPromisedRangeNamesTestsThatExist)
     assert_true(rows >= 25);
 }
 
+TEST_ALONE(EveryRowOfTheCatalogueHasAPromisedRange)
+{
+    FILE* file = fopen("src/base/README.md", "r");
+    char line[2000];
+    bool named[ROWS] = {false}, inTable = false;
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file) != NULL) {
+        inTable = inTable ? line[0] == '|' : strncmp(line, "| quantity | rows |", 19) == 0;
+        const char* rows = inTable ? strstr(line + 1, "| ") : NULL; // the second column
+        char ids[200] = "";
+        if (rows != NULL && sscanf(rows, "| %199[^|]", ids) == 1) {
+            for (int row = 0; row < ROWS; row++) {
+                named[row] = named[row] || namesRow(ids, row + 1);
+            }
+        }
+    }
+    fclose(file);
+    for (int row = 0; row < ROWS; row++) {
+        if (!named[row]) {
+            fail_msg("X%03d has no promised range", row + 1);
+        }
+    }
+}
+
 // ---- rays and particles
 
 // X019

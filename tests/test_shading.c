@@ -89,8 +89,19 @@ TEST(EveryKernelValueOfTheTable, 1)
     freeTable(&t);
 }
 
-// X089
-// A plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), integrated over
+// X087, X088: without a clamp, wherever d^2 is a float.
+TEST(LightFallsWithTheSquareOfAnyDistance, 1)
+{
+    for (int exponent = -18; exponent <= 18; exponent++) {
+        const float d = powf(10, (float)exponent);
+        const vplShadeLight light = lightAt(vplVec(0, d, 0), vplVec(0, -1, 0), 1);
+        const double e =
+            irradiance(context, VPL_LIGHTING_PHYSICAL, 0, vplVec(0, 0, 0), vplVec(0, 1, 0), &light, 1);
+        assertNear(e * (double)d * (double)d, 1, 1e-6, "irradiance", exponent);
+    }
+}
+
+// X089: a plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), integrated over
 // 20,000 rings.
 TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
 {
