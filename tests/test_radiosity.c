@@ -193,9 +193,9 @@ TEST(WhiteClosedRoomEndsWithAWarning, 2)
     vplScene_Destroy(scene);
 }
 
-// X092
 // ---- extremes
 
+// X092
 TEST(NoLightIsBlack, 2)
 {
     vplScene* scene = closedCubeScene(context, 0.5f, 0);

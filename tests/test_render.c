@@ -253,29 +253,41 @@ TEST(APlaneUnderAPointLightIsLitAsInTheBook, 1)
     vplScene_Destroy(scene);
 }
 
+// The sum of all values of a picture.
+static double sumOf(const vplScene* scene, const vplRenderOptions* options)
+{
+    double sum = 0;
+    vplImage* image = renderScene(scene, options, NULL);
+    for (int i = 0; i < 3 * image->width * image->height; i++) {
+        sum += (double)image->pixels[i];
+    }
+    vplImage_Destroy(image);
+    return sum;
+}
+
 // X090: documented direct light decreases as 1/N and the indirect sum does not; physical light does not
 // depend on N.
 TEST(DocumentedDirectLightFallsWithN, 2)
 {
     vplScene* scene = loadScene(context, "room-closed.json");
-    double sums[2][2];
+    double sums[2][2], indirect[2][2];
     for (int lighting = 0; lighting < 2; lighting++) {
         for (int k = 0; k < 2; k++) {
             vplRenderOptions o = smallOptions();
             o.lighting = (vplLighting)lighting;
             o.shadow.bias = VPL_BIAS_OPTION_EXACT;
             o.output.show = VPL_SHOW_DIRECT;
-            o.particles.count = k ? 20 : 10;
-            vplImage* image = renderScene(scene, &o, NULL);
-            sums[lighting][k] = 0;
-            for (int i = 0; i < 3 * o.output.width * o.output.height; i++) {
-                sums[lighting][k] += (double)image->pixels[i];
-            }
-            vplImage_Destroy(image);
+            o.particles.count = k ? 200 : 100;
+            sums[lighting][k] = sumOf(scene, &o);
+            o.output.show = VPL_SHOW_INDIRECT;
+            indirect[lighting][k] = sumOf(scene, &o);
         }
     }
     assertNear(sums[VPL_LIGHTING_PHYSICAL][0], sums[VPL_LIGHTING_PHYSICAL][1], 0, "physical", 0);
     assertNear(sums[VPL_LIGHTING_DOCUMENTED][0] / sums[VPL_LIGHTING_DOCUMENTED][1], 2, 1e-6, "documented", 0);
+    for (int lighting = 0; lighting < 2; lighting++) {
+        assertNear(indirect[lighting][0] / indirect[lighting][1], 1, 0.05, "indirect", lighting);
+    }
     vplScene_Destroy(scene);
 }
 
