@@ -257,6 +257,9 @@ TEST(FloatsKeepTheirPicturesAsFarAsIsPromised, 2)
         {"--method keller --particles 1000 --pipeline interleaved --interleave 4 --light-shadows ray", 1e-3,
          3e-3},
         {"--method radiosity --patches 200 --iterations 2000 --residual 1e-6", 1e-3, 3e-3},
+        {"--method keller --particles 1000 --pipeline lightcuts --light-shadows ray", 2e-2, 4e-2},
+        {"--method radiosity --patches 200 --hierarchy on --iterations 2000 --residual 1e-6", 2e-2, 4e-2},
+        {"--method radiosity --patches 200 --patch-placement adaptive", 2e-2, 4e-2},
         {"--method ssvp --rsm-size 256 --next-bounce maps --max-bounces 2 --max-clusters 8 --paraboloid 128",
          1e-2, 4e-2},
     };
