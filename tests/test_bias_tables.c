@@ -49,6 +49,7 @@ static void compareKernel(const vplShadow* shadow, double r, double cosine, doub
     assertNear(bias, wanted / r, error, what, row);
 }
 
+// X063
 // At 0 degrees the table's bias is negative, and ours exactly 0: the next sample is no nearer.
 TEST(ExactBiasIsThatOfTheTable, 1)
 {
@@ -213,6 +214,7 @@ TEST(ExactBiasIsThatOfEveryTexelOfTheTableAndEnough, 1)
     freeTable(&t);
 }
 
+// X064
 // bias_pair.csv: the least dynamic bias is enough up to the greatest angle, which binds.
 TEST(PairsOfTheTableAreJustEnough, 1)
 {
@@ -250,6 +252,7 @@ TEST(PairsOfTheTableAreJustEnough, 1)
     freeTable(&t);
 }
 
+// X063
 // The automatic pair is b_s = alpha far and b_dmax = 5.6 b_s. Without end, finer maps need (tan t - 1) / (1 -
 // cos t), which is 5.6 at 79.9 degrees.
 TEST(AutomaticPairIsJustEnoughUpTo79Point9Degrees, 1)

@@ -56,6 +56,7 @@ static double drawnDepth(vplContext* context, const vplView* view, float z)
     return -depth;
 }
 
+// X084
 // What the view and the rasterizer make of a point is the table's depth. z_ndc is 1 less the reversed depth: table against
 // formula, because no picture has it. At the planes themselves a rounding more or less would clip the triangle.
 TEST(DepthIsReversedAndThatOfTheTable, 1)

@@ -262,47 +262,87 @@ TEST_ALONE(AnyNumbersTakeASource)
     closeWorld(&w);
 }
 
+// Sums of points, weighted by power: red and green of the lamps below are 3 and 2.
+typedef struct PowerSum {
+    double power, mean[3];
+} PowerSum;
+
+static void addPoint(PowerSum* s, const vplShadeLight* p)
+{
+    const double power = (double)p->g / 2;
+    s->power += power;
+    s->mean[0] += power * (double)p->px;
+    s->mean[1] += power * (double)p->py;
+    s->mean[2] += power * (double)p->pz;
+}
+
+static void checkCentred(const PowerSum* s, double area, vplVec3 place, int n)
+{
+    assertNear(s->power, area, 1e-5 * area, "power", n);
+    assertNear(s->mean[0] / s->power, (double)place.x, 1e-5, "x", n);
+    assertNear(s->mean[1] / s->power, (double)place.y, 1e-5, "y", n);
+    assertNear(s->mean[2] / s->power, (double)place.z, 1e-5, "z", n);
+}
+
+static const vplVec3 LAMP_PLACES[3] = {{1, 2, 3}, {-4, 1, 0}, {0, -2, 5}},
+                     LAMP_SIZES[3] = {{1, 2, 1}, {3, 0.125f, -1}, {1, 1, 1}};
+static const double LAMP_AREAS[3] = {2, 0.375, 6}; // the last is a box
+
+static void addLamp(const World* w, int i)
+{
+    addAreaLight(w, i == 2 ? VPL_OBJECT_BOX : VPL_OBJECT_QUAD, LAMP_PLACES[i], (double[3]){0.3 * i, 0.2, 0.1},
+                 LAMP_SIZES[i], (vplRgb){3, 2, 1});
+}
+
 // Of any number of points, each lamp's carry its power, and their mean is its middle, so that a room with a
-// lamp in the middle is as bright on the left as on the right.
+// lamp in the middle is as bright on the left as on the right. The faces of a box have numbers of points that differ by one,
+// but the same power.
 TEST_ALONE(PointsOnAreaLightsAreCentredForEveryNumber)
 {
-    static const vplVec3 places[3] = {{1, 2, 3}, {-4, 1, 0}, {0, -2, 5}};
-    static const vplVec3 sizes[3] = {{1, 2, 1}, {3, 0.125f, -1}, {1, 1, 1}};
-    const double areas[3] = {2, 0.375, 6}; // the last is a box
     World w = openWorld();
     for (int i = 0; i < 3; i++) {
-        addAreaLight(&w, i == 2 ? VPL_OBJECT_BOX : VPL_OBJECT_QUAD, places[i], (double[3]){0.3 * i, 0.2, 0.1},
-                     sizes[i], (vplRgb){3, 2, 1});
+        addLamp(&w, i);
     }
     freeze(&w, NULL, 0);
     static vplShadeLight points[600];
     for (int n = 24; n <= 600; n++) { // fewer may leave the smallest lamp without a point
         assert_int_equal(vplSampleAreaLights(w.emission, n, points), n);
-        double power[3] = {0}, mean[3][3] = {{0}};
-        int counts[3] = {0};
+        PowerSum sums[3] = {{0}};
         for (int i = 0; i < n; i++) {
-            const vplShadeLight* p = &points[i];
+            const vplVec3 at = {points[i].px, points[i].py, points[i].pz};
             int near = 0;
             for (int lamp = 1; lamp < 3; lamp++) {
-                const vplVec3 at = {p->px, p->py, p->pz};
-                near =
-                    vplLength(vplSub(at, places[lamp])) < vplLength(vplSub(at, places[near])) ? lamp : near;
+                near = vplLength(vplSub(at, LAMP_PLACES[lamp])) < vplLength(vplSub(at, LAMP_PLACES[near]))
+                           ? lamp
+                           : near;
             }
-            power[near] += (double)p->g / 2;
-            mean[near][0] += (double)p->px;
-            mean[near][1] += (double)p->py;
-            mean[near][2] += (double)p->pz;
-            counts[near]++;
+            addPoint(&sums[near], &points[i]);
         }
         for (int lamp = 0; lamp < 3; lamp++) {
-            const double far = lamp < 2 ? 1e-5 : 2.0 / sqrt(n); // the faces of a box share its points
-            assertNear(power[lamp], areas[lamp], 1e-5 * areas[lamp], "power", n);
-            assertNear(mean[lamp][0] / counts[lamp], (double)places[lamp].x, far, "x", n);
-            assertNear(mean[lamp][1] / counts[lamp], (double)places[lamp].y, far, "y", n);
-            assertNear(mean[lamp][2] / counts[lamp], (double)places[lamp].z, far, "z", n);
+            checkCentred(&sums[lamp], LAMP_AREAS[lamp], LAMP_PLACES[lamp], n);
         }
     }
     closeWorld(&w);
+}
+
+// A lamp alone: a quad from one point on, a box from one point on each of its faces on.
+TEST_ALONE(PointsOnALampAloneAreCentredFromTheFirstOn)
+{
+    for (int lamp = 0; lamp < 3; lamp++) {
+        World w = openWorld();
+        addLamp(&w, lamp);
+        freeze(&w, NULL, 0);
+        vplShadeLight points[64];
+        for (int n = lamp < 2 ? 1 : 6; n <= 64; n++) {
+            PowerSum sum = {0};
+            assert_int_equal(vplSampleAreaLights(w.emission, n, points), n);
+            for (int i = 0; i < n; i++) {
+                addPoint(&sum, &points[i]);
+            }
+            checkCentred(&sum, LAMP_AREAS[lamp], LAMP_PLACES[lamp], n);
+        }
+        closeWorld(&w);
+    }
 }
 
 // The same for a triangle, down to one point. All points are inside, and no two coincide.

@@ -30,7 +30,7 @@ TEST(EveryRayOfTheRoomMeetsTheObjectOfTheTable, 1)
     vplGeometry_Destroy(room);
 }
 
-// X003, X004: scales of any magnitude have a usable inverse.
+// X002 to X004: scales of any magnitude have a usable inverse.
 TEST(AnyUniformScaleGivesTheSameHit, 1)
 {
     const float scales[] = {1, 1e-13f, 1e-6f, 1e6f, 1e12f};
@@ -93,7 +93,7 @@ TEST(AmongEqualDistancesTheLowestObjectWins, 1)
     vplScene_Destroy(scene);
 }
 
-// X022, X031: a particle that bounces inside a box hits the box's other faces, and one that leaves never hits
+// X021 to X023, X031: a particle that bounces inside a box hits the box's other faces, and one that leaves never hits
 // it again.
 TEST(ABoxIsLeftOrCrossedFromItsOwnFace, 1)
 {

@@ -91,6 +91,7 @@ TEST(RaysLeaveConvexMeshes, 1)
     }
 }
 
+// X012
 TEST(RaysLeaveBoxesAndQuads, 1)
 {
     for (int i = 0; i < 40; i++) {
@@ -140,6 +141,7 @@ TEST(WallsOfARoomAreLeftForOtherWalls, 1)
     vplGeometry_Destroy(g);
 }
 
+// X026
 // Triangles find the face, and the analytic shape gives the hit point: the bits are those of vplRay_HitQuad
 // and vplRay_HitBox. The two could disagree on hit or miss only at edges, by rounding; no ray here comes that
 // near.
@@ -215,6 +217,7 @@ TEST(SmoothNormalsAreInterpolated, 1)
     }
 }
 
+// X005
 // The front of a quad made of triangles is where that of an analytic quad is, mirrored or not.
 TEST(TheFrontOfAMirroredMeshStaysTheFront, 1)
 {

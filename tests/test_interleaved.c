@@ -83,6 +83,7 @@ static void checkDefinition(const vplGeometry* g, int width, int height, int sid
     free(lights);
 }
 
+// X112
 // Covers sides and picture sizes that divide tiles and ones that do not, fewer lights than classes, and more
 // lights than a group.
 TEST(EveryPixelIsThatOfTheDefinition, 2, SLOW)

@@ -128,6 +128,7 @@ TEST(FluxOfEachStepIsThatOfTheTable, 2)
     freeTable(&t);
 }
 
+// X090
 // The three rows on Keller in estimator_factors.csv: the lightings agree on the emitter and differ by pi^j after
 // j bounces, so that a closed room of Le = 1 and rho = 0.5 has 1.5946399 instead of 2.
 TEST(BothLightingsDifferByTheFactorsOfTheTable, 2)
@@ -399,7 +400,7 @@ TEST(PartsAddUp, 2)
     vplScene_Destroy(scene);
 }
 
-// X031, X036: no particles, one particle, a black room, an area light that faces away from the room.
+// X031, X036, X040: no particles, one particle, a black room, an area light that faces away from the room.
 TEST(OddRoomsGiveFinitePictures, 2)
 {
     for (int i = 0; i < 4; i++) {

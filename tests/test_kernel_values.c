@@ -92,6 +92,7 @@ static void compareOpen(const vplContext* context, const Table* t, int row, int 
     }
 }
 
+// X085
 // Of the 84 rows, 64 have a light behind the surface or a surface behind the light, and one has both in one place: their
 // kernel is exactly 0. Two are 1e-25 and 1e20 apart, where float cannot hold r^2: all but the clamp is compared for the
 // same points at 2^83 and 2^-66 of the distance, and as they are the kernel must be between 0 and the clamped value (X087,
@@ -127,7 +128,19 @@ TEST(EveryKernelValueOfTheTable, 1)
     freeTable(&t);
 }
 
-// A plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), integrated over
+// X087, X088: without a clamp, wherever d^2 is a float.
+TEST(LightFallsWithTheSquareOfAnyDistance, 1)
+{
+    for (int exponent = -18; exponent <= 18; exponent++) {
+        const float d = powf(10, (float)exponent);
+        const vplShadeLight light = lightAt(vplVec(0, d, 0), vplVec(0, -1, 0), 1);
+        const double e = irradianceAt(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0}, vplVec(0, 0, 0),
+                                      vplVec(0, 1, 0), &light, 1);
+        assertNear(e * (double)d * (double)d, 1, 1e-6, "irradiance", exponent);
+    }
+}
+
+// X089: a plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), integrated over
 // 20,000 rings.
 TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
 {

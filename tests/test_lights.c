@@ -9,6 +9,7 @@
 
 #include <stdlib.h>
 
+// X032 to X035
 TEST(EveryCountOfTheTableIsTheDecimalOne, 1)
 {
     Table t = loadTable("counts.csv");
@@ -141,6 +142,7 @@ static void checkSet(vplContext* context, const vplGeometry* room, const Table* 
     (void)context;
 }
 
+// X012, X030, X041
 TEST(EveryParticleOfTheTableLandsWhereItSays, 2)
 {
     Table t = loadTable("room_particles.csv");

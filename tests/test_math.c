@@ -92,6 +92,7 @@ TEST_ALONE(RadicalInversesAreThoseOfTheTables)
     freeTable(&t);
 }
 
+// X043, X045
 TEST_ALONE(WarpsAreThoseOfTheTable)
 {
     Table t = loadTable("disk_maps.csv");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of scenes far from (0, 0, 0): X028.
-#include "test.h"
+#include "scenes.h"
 
 #include "math/vec.h"
 
@@ -65,6 +65,7 @@ static vplScene* loadAt(vplContext* context, const double offset[3])
 // Multiples of the power of two to which the origin is rounded.
 static const double FAR[] = {1024, 1e4, 1e5, 1e6, 1e7, -3e6};
 
+// X028
 // Pictures by all methods, and the ends of the paths.
 TEST(ASceneFarAwayHasThePicturesOfTheSceneAtHome, 1, SLOW)
 {
@@ -169,5 +170,109 @@ TEST(BakedVerticesAreInTheCallersSpace, 1)
         assertNear(p[0], offset[0], 2, "x", i);
         assertNear(p[1], offset[1] + 2, 2, "y", i);
         assertNear(p[2], offset[2], 2, "z", i);
+    }
+}
+
+// ---- positions given as floats, without an origin
+
+// A quad of 3 m x 4 m, 5 m from corner to corner, whose farthest corner is at this x.
+static const char* messageAt(vplContext* context, float farthest)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    vplGeometry* g;
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(farthest - 1.5f, 0, 0), 0, 0, vplVec(3, 4, 1));
+    takeMessage();
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+    return takeMessage();
+}
+
+// A scene warns from 4,096 times its size on, on either side, and says how far it is and by how much it is off.
+TEST(FloatsFarFromTheOriginAreAWarning, 1)
+{
+    assert_string_equal(messageAt(context, 0), "");
+    assert_string_equal(messageAt(context, 20480), "");
+    assert_string_equal(
+        messageAt(context, 20480.5f),
+        "the scene is 5 m large and 20480.5 m from (0, 0, 0): positions are off by up to 0.0012 m. "
+        "Nearer vertices, or vplScene_SetOrigin, keep them exact");
+    assert_string_equal(
+        messageAt(context, -2e6f),
+        "the scene is 5 m large and 2e+06 m from (0, 0, 0): positions are off by up to 0.12 m. "
+        "Nearer vertices, or vplScene_SetOrigin, keep them exact");
+}
+
+// A closed room of 4 m x 3 m x 4 m with a box and a point light, as floats.
+static vplScene* floatRoom(vplContext* context, vplVec3 offset)
+{
+    static const struct {
+        vplVec3 at;
+        double turnX, turnY;
+        vplVec3 size;
+    } walls[7] = {{{0, 0, 0}, -VPL_PI / 2, 0, {4, 4, 1}},
+                  {{0, 3, 0}, VPL_PI / 2, 0, {4, 4, 1}},
+                  {{0, 1.5f, -2}, 0, 0, {4, 3, 1}},
+                  {{0, 1.5f, 2}, 0, VPL_PI, {4, 3, 1}},
+                  {{-2, 1.5f, 0}, 0, VPL_PI / 2, {4, 3, 1}},
+                  {{2, 1.5f, 0}, 0, -VPL_PI / 2, {4, 3, 1}},
+                  {{0.6f, 0.5f, -0.3f}, 0, 0.35, {0.8f, 1, 0.9f}}};
+    vplScene* scene = sceneOf(context, 0.5f);
+    for (int i = 0; i < 7; i++) {
+        addThing(scene, i < 6 ? VPL_OBJECT_QUAD : VPL_OBJECT_BOX, 0, vplAdd(walls[i].at, offset),
+                 walls[i].turnX, walls[i].turnY, walls[i].size);
+    }
+    aim(scene, vplAdd(vplVec(-0.3f, 1.4f, 1.9f), offset), vplAdd(vplVec(0.1f, 1, -1), offset));
+    addEmitter(scene, VPL_EMITTER_POINT, vplAdd(vplVec(-0.5f, 2.6f, 0.2f), offset), vplVec(0, -1, 0), 10);
+    return scene;
+}
+
+static vplImage* floatPicture(vplContext* context, vplVec3 offset, const char* words)
+{
+    vplScene* scene = floatRoom(context, offset);
+    vplRenderOptions o = plainOptions();
+    assert_int_equal(vplRenderOptions_SetAll(&o, words), VPL_SUCCESS);
+    o.output.width = 32;
+    o.output.height = 24;
+    o.shadow.mapSize = 256;
+    vplImage* image = renderScene(scene, &o, NULL);
+    vplScene_Destroy(scene);
+    return image;
+}
+
+// What src/base/README.md promises of 100 m, 25 times the side of the room, and of 1,000 m. Rounding moves virtual lights and the
+// edges of their shadows, and SSVP's choice of lights.
+TEST(FloatsKeepTheirPicturesAsFarAsIsPromised, 2)
+{
+    static const struct {
+        const char* words;
+        double near, far; // rmse over the mean
+    } cases[] = {
+        {"--method direct --light-shadows map", 1e-5, 3e-3},
+        {"--method direct --light-shadows ray", 1e-5, 3e-3},
+        {"--method path --spp 4 --pixel centre --max-bounces 8", 1e-5, 3e-3},
+        {"--method keller --particles 100 --pipeline batched --light-shadows ray", 1e-3, 3e-3},
+        {"--method keller --particles 100 --pipeline deferred --light-shadows map --light-map 64", 1e-3,
+         3e-3},
+        {"--method keller --particles 1000 --pipeline interleaved --interleave 4 --light-shadows ray", 1e-3,
+         3e-3},
+        {"--method radiosity --patches 200 --iterations 2000 --residual 1e-6", 1e-3, 3e-3},
+        {"--method keller --particles 1000 --pipeline lightcuts --light-shadows ray", 2e-2, 4e-2},
+        {"--method radiosity --patches 200 --hierarchy on --iterations 2000 --residual 1e-6", 2e-2, 4e-2},
+        {"--method radiosity --patches 200 --patch-placement adaptive", 2e-2, 4e-2},
+        {"--method ssvp --rsm-size 256 --next-bounce maps --max-bounces 2 --max-clusters 8 --paraboloid 128",
+         1e-2, 4e-2},
+    };
+    for (int i = 0; i < (int)(sizeof cases / sizeof *cases); i++) {
+        vplImage* home = floatPicture(context, vplVec(0, 0, 0), cases[i].words);
+        for (int far = 0; far < 2; far++) {
+            const float d = far ? 1000 : 100;
+            vplComparison c;
+            vplImage* image = floatPicture(context, vplVec(d, d / 3, -d), cases[i].words);
+            assert_int_equal(vplImage_Compare(image, home, &c), VPL_SUCCESS);
+            assertNear(c.relativeRmse, 0, far ? cases[i].far : cases[i].near, cases[i].words, (int)d);
+            vplImage_Destroy(image);
+        }
+        vplImage_Destroy(home);
     }
 }

@@ -256,6 +256,7 @@ static double heightOf(const vplVec3 corner[3])
     return nearest > 0 ? fabs(dot(n, p[0])) / sqrt(dot(n, n) * nearest) : 0;
 }
 
+// X103
 TEST(BoundsOfTrianglesLoseNoTexel, 1)
 {
     Dice dice = {21, 0};

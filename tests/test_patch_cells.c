@@ -94,6 +94,7 @@ static double coveredShare(const vplPatchSide* s, int cell, const vplGeometry* g
     return covered / 256.0;
 }
 
+// X101
 // The sides are the fronts of all 784 patches except those of the floor that a block covers entirely. No
 // backs are open, and no cell that a block covers. Cells that are mostly free are open, others are not.
 TEST(TheReportsBoxHasItsFrontsButUnderBlocks, 2)

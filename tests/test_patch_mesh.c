@@ -402,6 +402,7 @@ TEST(CoveredPatchesDarkenNothing, 1)
     closeMesh(m);
 }
 
+// X101
 // Sides are open at random: each corner of an open side has a value, so no triangle fades to black.
 TEST(NoCornerOfALitSideIsBlack, 1)
 {

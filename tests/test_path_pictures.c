@@ -259,6 +259,7 @@ TEST(PerfectMirrorRoomEnds, 1)
     vplScene_Destroy(scene);
 }
 
+// X092
 TEST(NothingToSeeIsBlack, 1)
 {
     vplScene* scene = newScene(context);

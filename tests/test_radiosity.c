@@ -153,6 +153,7 @@ TEST(OneSampleFormFactorsSaturateAndOursDoNot, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
+// X094
 TEST(DivergenceIsASentence, 2)
 {
     vplScene* scene = closedCubeScene(context, 0.9f, 1);
@@ -194,6 +195,7 @@ TEST(WhiteClosedRoomEndsWithAWarning, 2)
 
 // ---- extremes
 
+// X092
 TEST(NoLightIsBlack, 2)
 {
     vplScene* scene = closedCubeScene(context, 0.5f, 0);
@@ -336,10 +338,11 @@ TEST(WhatIsNotPossibleIsASentence, 1, SLOW)
 }
 
 // A floor, a wall, a box and a lamp, all of them `size` times as large, and a thin box `far` sizes away.
-static uint64_t sizedHash(vplContext* context, float size, float far, const vplRenderOptions* options)
+static vplImage* sizedPicture(vplContext* context, float size, float far, float emission,
+                              const vplRenderOptions* options)
 {
     vplScene* scene = sceneOf(context, 0.7f);
-    const int lamp = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, 10);
+    const int lamp = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, emission);
     const double quarter = VPL_PI / 2;
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = vplVec(0, 2 * size, 6 * size);
@@ -358,10 +361,33 @@ static uint64_t sizedHash(vplContext* context, float size, float far, const vplR
                  vplVec(size, size, 1e-6f * size));
     }
     vplRenderStats stats;
-    vplImage_Destroy(renderScene(scene, options, &stats));
+    vplImage* image = renderScene(scene, options, &stats);
     assert_true(isfinite(stats.solve.spectralRadius) && stats.solve.spectralRadius > 0.01);
     vplScene_Destroy(scene);
-    return stats.imageHash;
+    return image;
+}
+
+static uint64_t sizedHash(vplContext* context, float size, float far, const vplRenderOptions* options)
+{
+    vplImage* image = sizedPicture(context, size, far, 10, options);
+    const uint64_t hash = vplImage_Hash(image);
+    vplImage_Destroy(image);
+    return hash;
+}
+
+// The settings of a test of sizes: links or form factors of either kind.
+static vplRenderOptions sizedOptions(int which)
+{
+    vplRenderOptions options = plainOptions();
+    options.method = VPL_METHOD_RADIOSITY;
+    options.output.width = 40;
+    options.output.height = 30;
+    options.radiosity.patches = 200;
+    options.radiosity.hierarchy = which == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
+    // Links between the slivers that cuts leave keep their bits from 2^-20 m to 2^30 m only.
+    options.radiosity.cuts = which == 1 ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_AUTO;
+    options.radiosity.formFactors = which == 2 ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
+    return options;
 }
 
 // Light of surfaces does not depend on the unit of length: powers of two leave every bit. A thin box far away
@@ -370,15 +396,7 @@ TEST(RadiosityIsTheSameAtAnySize, 1)
 {
     static const int exponents[] = {-36, -20, -10, 10, 20, 30, 36, 42};
     for (int which = 0; which < 3; which++) {
-        vplRenderOptions options = plainOptions();
-        options.method = VPL_METHOD_RADIOSITY;
-        options.output.width = 40;
-        options.output.height = 30;
-        options.radiosity.patches = 200;
-        options.radiosity.hierarchy = which == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
-        // Links between the slivers that cuts leave keep their bits from 2^-20 m to 2^30 m only.
-        options.radiosity.cuts = which == 1 ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_AUTO;
-        options.radiosity.formFactors = which == 2 ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
+        const vplRenderOptions options = sizedOptions(which);
         const uint64_t wanted = sizedHash(context, 1, 0, &options);
         for (int i = 0; i < 8; i++) {
             assert_true(sizedHash(context, ldexpf(1, exponents[i]), 0, &options) == wanted);
@@ -386,5 +404,33 @@ TEST(RadiosityIsTheSameAtAnySize, 1)
         for (int i = 0; i < 4; i++) {
             sizedHash(context, 1, (float)pow(10, 4 + i), &options);
         }
+    }
+}
+
+// A scene of 1e6 m whose lamp emits 1e15 W/(m^2 sr) is that of 1 m and 1 W/(m^2 sr), 1e15 times as bright. With powers of two no
+// bit differs. With others rounding decides whether a ray between patches passes an edge, and which patches are linked.
+TEST(RadiosityOfAHugeBrightSceneIsThatOfASmallDimOne, 1)
+{
+    static const struct {
+        float size, bright;
+        double most[3]; // rmse over the mean: form factors by rays, links, the document's form factors
+    } cases[] = {{0x1p19f, 0x1p49f, {0, 0, 0}},
+                 {1e6f, 1e15f, {1e-2, 1e-2, 1e-6}},
+                 {1e6f, 1e-30f, {1e-2, 1e-2, 1e-6}},
+                 {1.1f, 1e15f, {1e-2, 1e-2, 1e-6}}};
+    for (int which = 0; which < 3; which++) {
+        const vplRenderOptions options = sizedOptions(which);
+        vplImage* small = sizedPicture(context, 1, 0, 1, &options);
+        for (int i = 0; i < 4; i++) {
+            vplComparison c;
+            vplImage* huge = sizedPicture(context, cases[i].size, 0, cases[i].bright, &options);
+            for (int k = 0; k < 3 * 40 * 30; k++) {
+                huge->pixels[k] /= cases[i].bright;
+            }
+            assert_int_equal(vplImage_Compare(huge, small, &c), VPL_SUCCESS); // all are finite
+            assertNear(c.relativeRmse, 0, cases[i].most[which], "rmse", i);
+            vplImage_Destroy(huge);
+        }
+        vplImage_Destroy(small);
     }
 }

@@ -16,6 +16,7 @@ static void openTwoPatches(Exchange* e, vplContext* context, const Table* t, int
     e->rows[2] = (float)number(t, row, "F21");
 }
 
+// X096
 TEST(TwoPatchesAreThoseOfTheTable, 1)
 {
     Table t = loadTable("two_patch.csv");

@@ -46,6 +46,7 @@ static void checkEqual(vplContext* context)
     }
 }
 
+// X082
 TEST_ALONE(EqualTouchesExactlyWhatLessLeft)
 {
     for (vplIsa isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
@@ -91,6 +92,7 @@ TEST(OfCoplanarSurfacesOneIsTheOwner, 1)
     free(v);
 }
 
+// X071
 // A grid of jittered vertices fills a rectangle: every pixel centre inside is covered by exactly one
 // triangle, whatever the jitter, the diagonals and the windings.
 TEST(SharedEdgeIsCoveredOnce, 1)
@@ -293,6 +295,7 @@ TEST(BadTrianglesDrawNothing, 1)
     }
 }
 
+// X075, X076
 // Huge but finite coordinates are clipped to the guard band and do not wrap around.
 TEST(HugeTrianglesCoverThePicture, 1)
 {

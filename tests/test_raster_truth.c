@@ -20,6 +20,7 @@ static uint32_t crc32Of(const uint8_t* bytes, size_t count)
     return ~crc;
 }
 
+// X073 to X075
 TEST(EveryTriangleOfTheTableFillsBitForBit, 1)
 {
     Table t = loadTable("fill_tris.csv");
@@ -109,6 +110,7 @@ static void checkMesh(vplContext* context, const char* name, json_t* mesh)
     freeCanvas(&c);
 }
 
+// X071, X072, X078
 TEST(EveryMeshOfTheTableIsOwnedBitForBit, 2)
 {
     json_error_t error;
@@ -123,6 +125,7 @@ TEST(EveryMeshOfTheTableIsOwnedBitForBit, 2)
     json_decref(meshes);
 }
 
+// X077
 TEST_ALONE(VerticesSnapToNearestEven)
 {
     Table t = loadTable("snap.csv");
@@ -150,6 +153,7 @@ static void loadPerspective(const Table* t, int row, ClipVertex v[3], double val
     }
 }
 
+// X081
 // Perspective barycentrics carry a few roundings, and varyings are differences from corner 0, so errors scale
 // with the spread of the corners' values. Barycentrics on the screen, b, are perspective ones times w of the
 // corner over w of the pixel, and weigh `attr_affine`.

@@ -110,6 +110,7 @@ static void compareQuadRow(vplContext* context, const Table* t, int row, QuadRow
     }
 }
 
+// X001, X004, X006, X007, X009, X010, X011, X013, X014, X015, X016, X018, X019
 // Where float cannot hold t, the documented result is a miss (X017).
 TEST(EveryRayQuadVerdictOfTheTable, 1)
 {
@@ -144,6 +145,7 @@ TEST(EveryRayQuadVerdictOfTheTable, 1)
     freeTable(&t);
 }
 
+// X002, X004, X005, X006, X020, X021, X022, X023, X024, X025, X026, X027, X028
 // All columns but a and b (the box's entry and exit: t_strict is the one of them that is hit) and t_doc, the
 // printed rule, from which vplRay_HitBox departs.
 TEST(EveryRayBoxVerdictOfTheTable, 1)

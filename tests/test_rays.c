@@ -198,6 +198,7 @@ static vplVec3 pointOn(const Shape* shape, int index, Dice* dice)
                             : vplAdd(p[0], vplAdd(along, vplScale(t, vplSub(p[2], p[0]))));
 }
 
+// X013
 // Rays aim at corners, at edges and anywhere, from inside and through the surface from far outside: they must
 // always hit.
 TEST(SharedEdgesLetNothingThrough, 1)

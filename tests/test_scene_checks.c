@@ -69,6 +69,7 @@ TEST(CamerasAreChecked, 1)
     vplScene_Destroy(scene);
 }
 
+// X042
 TEST(MaterialsAreChecked, 1)
 {
     vplScene* scene = emptyScene(context);
@@ -102,6 +103,7 @@ TEST(MaterialsAreChecked, 1)
     vplScene_Destroy(scene);
 }
 
+// X001, X008
 TEST(ObjectsAreChecked, 1)
 {
     vplScene* scene = emptyScene(context);

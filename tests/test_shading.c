@@ -202,6 +202,38 @@ static double directBelow(vplContext* context, vplLighting lighting, float d, in
     return (double)e.r;
 }
 
+// X059: l / |l| and 1 / d^2 are not defined at the light itself, which adds nothing there: on either side of a surface, in
+// both lightings, with and without a shadow map.
+TEST(APointAtTheLightGetsNothing, 1)
+{
+    vplGeometry* cube = closedCube(context, 0.5f);
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    emitter.position = vplVec(0.25f, -1, 0.5f); // on the floor
+    const vplSurfacePoint points[2] = {{emitter.position, {0, 1, 0}, 0}, {emitter.position, {0, -1, 0}, 0}};
+    vplShadowDef shadowDef = vplDefaultShadowDef();
+    vplCubeMap* map;
+    vplShadow shadows[2] = {{0}};
+    vplCubeMapDef mapDef = vplDefaultCubeMapDef();
+    mapDef.position = emitter.position;
+    mapDef.size = 16;
+    assert_int_equal(vplCubeMap_Create(cube, &mapDef, NULL, NULL, &map), VPL_SUCCESS);
+    assert_int_equal(vplShadow_Create(map, &shadowDef, &shadows[1]), VPL_SUCCESS);
+    for (int i = 0; i < 4; i++) {
+        vplShadeDef def = vplDefaultShadeDef();
+        def.lighting = (vplLighting)(i % 2);
+        def.emitters = &emitter;
+        def.shadows = &shadows[i / 2];
+        def.emitterCount = 1;
+        vplRgb e[2] = {{-1, -1, -1}, {-1, -1, -1}};
+        assert_int_equal(vplShadePoints(cube, &def, points, 2, e, NULL), VPL_SUCCESS);
+        for (int k = 0; k < 2; k++) {
+            assert_true(e[k].r == 0 && e[k].g == 0 && e[k].b == 0);
+        }
+    }
+    vplCubeMap_Destroy(map);
+    vplGeometry_Destroy(cube);
+}
+
 // The rows on Franchi and Ferrante in estimator_factors.csv that are about single terms. "FF bounce direction"
 // has no factor, "units" is no formula, and "FF light of step k" and "FF series" follow below.
 TEST(TermsOfBothLightingsDifferByTheFactorsOfTheTable, 1)
@@ -317,11 +349,13 @@ TEST(AMillionEqualLightsAddUp, 2)
     free(lights);
 }
 
+static const int ODD_SIZES[][2] = {{1, 1}, {3, 5}, {64, 64}, {65, 63}, {130, 67}};
+
 // X112, X092: picture sizes that are no multiple of a tile or block, and no light at all.
 TEST(EveryPixelOfAnySizeIsShadedOnce, 2)
 {
     vplShadeLight light = lightAt(vplVec(0, 5, 0), vplVec(0, -1, 0), 1);
-    const int sizes[][2] = {{1, 1}, {3, 5}, {64, 64}, {65, 63}, {130, 67}};
+    const int(*sizes)[2] = ODD_SIZES;
     for (int i = 0; i < 5; i++) {
         vplShadeDef def = vplDefaultShadeDef();
         def.lighting = VPL_LIGHTING_DOCUMENTED;
@@ -346,5 +380,33 @@ TEST(EveryPixelOfAnySizeIsShadedOnce, 2)
             assert_true(dark->pixels[p] == 0);
         }
         vplImage_Destroy(dark);
+    }
+}
+
+// X112: picture sizes that are no multiple of the square of pixels that share the lights. K^2 equal lights straight above,
+// one for each pixel of the square, light every pixel as all of them do.
+TEST(EveryPixelOfAnySizeIsInterleavedOnce, 2)
+{
+    enum { MOST_LIGHTS = VPL_MAX_INTERLEAVE * VPL_MAX_INTERLEAVE };
+    vplShadeLight lights[MOST_LIGHTS];
+    for (int i = 0; i < MOST_LIGHTS; i++) {
+        lights[i] = lightAt(vplVec(0, 1e7f, 0), vplVec(0, -1, 0), 1);
+    }
+    for (int i = 0; i < 5; i++) {
+        const int width = ODD_SIZES[i][0], height = ODD_SIZES[i][1];
+        for (int side = 2; side <= VPL_MAX_INTERLEAVE; side++) {
+            vplShadeDef def = vplDefaultShadeDef();
+            def.lighting = VPL_LIGHTING_DOCUMENTED;
+            def.accumulation = VPL_ACCUMULATE_INTERLEAVED;
+            def.interleave = side;
+            def.lights = lights;
+            def.lightCount = side * side;
+            vplImage* image = shadeFloor(context, def, width, height);
+            const double wanted = 0.5 / VPL_PI * side * side; // a floor that reflects 0.5
+            for (int p = 0; p < 3 * width * height; p++) {
+                assertNear((double)image->pixels[p], wanted, 2e-6 * wanted, "radiance", side);
+            }
+            vplImage_Destroy(image);
+        }
     }
 }

@@ -220,6 +220,7 @@ TEST(NoLightGoesThroughSeams, 1)
     vplGeometry_Destroy(g);
 }
 
+// X057
 TEST(WithNothingThereAllIsLit, 1)
 {
     vplGeometry* below = floorQuad(context, vplVec(0, -5, 0), 2, 0.5f);
@@ -343,6 +344,7 @@ TEST_ALONE(MapsAndFactorsHaveTheSameBitsEverywhere)
     assertSameEverywhere(hashOf);
 }
 
+// X067
 // Maps of all sizes except the coarsest find a wall between map and point, and leave a point beside the wall
 // lit.
 TEST(MapsOfAllSizesTellAWallFromNone, 2)

@@ -5,6 +5,7 @@
 
 #include "math/vec.h"
 
+// X061, X062
 TEST(EveryShadowVerdictOfTheTable, 1)
 {
     Table t = loadTable("shadow_compare.csv");
@@ -24,6 +25,7 @@ TEST(EveryShadowVerdictOfTheTable, 1)
     freeTable(&t);
 }
 
+// X065
 // peter_panning.csv: the width of the light leak behind a thin wall at x0. Seen from the light at height h, the
 // floor at x lies r away and the wall r x0 / x, which every texel stores.
 TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 1)
@@ -57,6 +59,7 @@ TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 1)
     freeTable(&t);
 }
 
+// X065
 // The same with drawn maps, where the table's leak is at least twice as wide as what a texel hides.
 TEST(LightLeaksBehindADrawnWallAsFarAsTheTableSays, 2)
 {
@@ -97,6 +100,7 @@ static vplCubeMap* halfPlaneMap(vplContext* context, float edge, int size, vplGe
     return makeCubeMap(g, (vplVec3){0, 0, 0}, size);
 }
 
+// X070
 TEST(PcfGivesTheExpectationOfADisc, 2)
 {
     Table t = loadTable("pcf_halfplane.csv");
@@ -123,6 +127,7 @@ TEST(PcfGivesTheExpectationOfADisc, 2)
     freeTable(&t);
 }
 
+// X070
 // pcf_grid.csv: the table's own offsets replace ours, and counts must be exact, also where a sample falls on the
 // edge: lengths are such that the edge then lies between two texels. The expectation is that of a square, to the last digit
 // in test_formulas.c; samples in a grid find it to half of the grid's step.

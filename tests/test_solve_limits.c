@@ -31,6 +31,35 @@ TEST(WhatDivergesIsRefusedWithItsRadius, 1)
     }
 }
 
+// Factors so large, or infinite, that a sweep or the radius overflows: the sentence has numbers of float only.
+TEST(OverflowWhileDivergingIsASentenceOfFiniteNumbers, 1)
+{
+    static const float factors[] = {1e20f, 1e30f, FLT_MAX, INFINITY};
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 4; i++) {
+            Exchange e;
+            vplRgb source[MANY], b[MANY];
+            openExchange(&e, context, MANY);
+            fillSphere(&e, 43);
+            for (size_t r = 0; r < (size_t)MANY * MANY; r++) {
+                e.rows[r] = factors[i];
+            }
+            fillSources(source, MANY, 44);
+            memcpy(b, source, sizeof b);
+            const vplSolveDef def = sweeps(SOLVERS[k], 100);
+            assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_LIMIT);
+            const char* message = takeMessage();
+            assert_non_null(strstr(message, "the largest is beyond the range of float, and grows"));
+            assert_non_null(
+                strstr(message, i < 2 ? "form factors is 1.421e+" : "form factors is beyond the range"));
+            assert_null(strstr(message, "inf"));
+            assert_null(strstr(message, "nan"));
+            assert_memory_equal(b, source, sizeof b);
+            freeExchange(&e);
+        }
+    }
+}
+
 // Divergence is refused even if few sweeps are requested.
 TEST(AFewSweepsOfWhatDivergesAreRefusedToo, 1)
 {

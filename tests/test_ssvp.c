@@ -388,6 +388,7 @@ TEST(CentroidsInMidAirLightTheBallTheyAreIn, 2)
     vplScene_Destroy(scene);
 }
 
+// X092
 TEST(BlackScenesAndLightsThatSeeNothingStayBlack, 2)
 {
     vplScene* black = spotRoom(context, 0);

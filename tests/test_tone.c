@@ -102,7 +102,7 @@ TEST(ToneMapsKeepMiddleGrey, 1)
     }
 }
 
-// X110, X111
+// X109 to X111
 TEST(ToneMapsGiveValuesOfAScreenForAnyInput, 1)
 {
     const float odd[] = {0,      -0.0f,   -1,       1e30f,     FLT_MAX, -FLT_MAX,

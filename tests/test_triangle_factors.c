@@ -3,6 +3,7 @@
 // ff_closure.csv, and properties of all pairs.
 #include "factor_cases.h"
 
+// X095
 TEST_ALONE(FactorsOfPairsAreThoseOfTheTable)
 {
     Table t = loadTable("ff_triangles.csv");

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 
+// X053
 TEST_ALONE(FramesAreThoseOfTheTable)
 {
     Table t = loadTable("cube_frames.csv");
@@ -23,6 +24,7 @@ TEST_ALONE(FramesAreThoseOfTheTable)
     freeTable(&t);
 }
 
+// X049, X051, X052
 // All columns but face_xyz, the faces of another order of ties.
 TEST_ALONE(EveryDirectionOfTheTableFindsItsTexel)
 {
@@ -88,6 +90,7 @@ TEST(TexelsHoldTheDistanceOfTheWall, 2)
     vplGeometry_Destroy(cube);
 }
 
+// X056
 // shadow_distance.csv: the map stores the distance of a small quad at the point that faces the light.
 TEST(StoredDistancesAreRadialAndUnclamped, 1)
 {
@@ -137,7 +140,7 @@ TEST(StoredDistancesAreRadialAndUnclamped, 1)
     freeTable(&t);
 }
 
-// X057, X059, X067: an empty map, a fragment at the light, one texel.
+// X050, X057, X059, X067: an empty map, a fragment at the light, one texel.
 TEST(DegenerateShadowsAreDefined, 1)
 {
     FlatMap flat;

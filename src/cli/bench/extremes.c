@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // vpl bench --extremes: runs the sweeps and prints the stability table. An error above what is promised ends in
-// an exclamation mark; a refusal is a letter, and its sentence stands below the sweep.
+// an exclamation mark; a refusal, or what is left out, is a letter, and its sentence stands below the sweep.
 #include "cli/bench/bench.h"
 #include "cli/bench/extremes.h"
 
@@ -50,17 +50,20 @@ static double boundOf(const ExtremeSweep* s, int method)
 static void addCell(const Arguments* a, Report* r, const Trial* t, vplResult result)
 {
     const ExtremeSweep* s = t->sweep;
-    const bool promised = t->value >= s->low && t->value <= s->high, done = result == VPL_SUCCESS;
-    const bool broken = promised && !(done && !(t->error > boundOf(s, t->method)));
+    const bool promised = t->value >= s->low && t->value <= s->high, left = t->leftOut != NULL;
+    const bool done = result == VPL_SUCCESS && !left;
+    const bool broken = promised && !left && !(done && t->error <= boundOf(s, t->method)); // NaN is broken
+    if (left) {
+        snprintf(r->said, SENTENCE, "%s", t->leftOut);
+    }
     r->broken += broken;
     if (a->json) {
-        json_array_append_new(r->json, json_pack("{s:s, s:f, s:s, s:o, s:s, s:b, s:f}", "sweep", s->name,
-                                                 "value", t->value, "method", EXTREME_METHODS[t->method].name,
-                                                 "error", numberJson(done ? t->error : (double)NAN),
-                                                 "refused", done ? "" : r->said, "promised", promised,
-                                                 "bound", boundOf(s, t->method)));
-    } else if (done && isnan(t->error)) {
-        printf("%13s", "");
+        json_array_append_new(r->json,
+                              json_pack("{s:s, s:f, s:s, s:o, s:s, s:s, s:b, s:f}", "sweep", s->name, "value",
+                                        t->value, "method", EXTREME_METHODS[t->method].name, "error",
+                                        numberJson(done ? t->error : (double)NAN), "refused",
+                                        done || left ? "" : r->said, "left_out", left ? r->said : "",
+                                        "promised", promised, "bound", boundOf(s, t->method)));
     } else if (done) {
         printf(" %11.1e%c", t->error, broken ? '!' : ' ');
     } else {
@@ -90,6 +93,9 @@ static void printFoot(const Report* r, const ExtremeSweep* s)
     printf("\n");
     for (int i = 0; i < r->sentenceCount; i++) {
         printf("  %c: %s\n", 'a' + i, r->sentences[i]);
+    }
+    if (s->others != NULL) {
+        printf("  blank: %s\n", s->others);
     }
     fflush(stdout);
 }
@@ -125,9 +131,26 @@ static void runSweep(const Arguments* a, const Trial* first, const ExtremeSweep*
     }
 }
 
+// What stands above the whole table.
+static void printMethods(void)
+{
+    printf(
+        "vpl bench --extremes: errors of pictures, root mean square over that of the truth. A letter is a "
+        "refusal or what is "
+        "left out; its sentence\nstands below its sweep. An error above the last line of its sweep, which is "
+        "what is "
+        "promised, has a mark. A floor alone has no indirect\nlight: all methods show its direct light.\n\n");
+    for (int m = 0; m < METHODS; m++) {
+        printf("%14s  %s\n", EXTREME_METHODS[m].name, EXTREME_METHODS[m].words);
+    }
+}
+
 static int runSweeps(const Arguments* a, const Trial* first, Report* r)
 {
     int ran = 0;
+    if (!a->json && a->stage == NULL) {
+        printMethods();
+    }
     for (int i = 0; i < EXTREME_SWEEP_COUNT; i++) {
         const ExtremeSweep* sweep = &EXTREME_SWEEPS[i];
         if (!isAskedFor(a, sweep->name)) {

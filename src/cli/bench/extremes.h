@@ -7,7 +7,23 @@
 
 enum { MOST_VALUES = 12 };
 
-enum { DIRECT_MAP, DIRECT_RAYS, BATCHED, DEFERRED, INTERLEAVED, PATH, SSVP, RADIOSITY, METHODS };
+enum {
+    DIRECT_MAP,
+    DIRECT_RAYS,
+    MULTIPASS,
+    BATCHED,
+    DEFERRED,
+    INTERLEAVED,
+    LIGHTCUTS,
+    PATH,
+    SSVP,
+    RADIOSITY,
+    LINKS,
+    GATHER,
+    ADAPTIVE,
+    AUTO,
+    METHODS
+};
 
 // A method with the settings of the table.
 typedef struct Method {
@@ -26,6 +42,7 @@ typedef struct ExtremeSweep {
     double values[MOST_VALUES];
     int valueCount;
     int methods;            // bits
+    const char* others;     // why the other methods have no column; NULL: all have
     double low, high;       // promised range of values
     double bounds[METHODS]; // promised error; 0: as the first's
     vplResult (*measure)(Trial* trial);
@@ -41,8 +58,9 @@ struct Trial {
     const ExtremeSweep* sweep;
     double value;
     int method;
-    vplImage** home; // pictures by method that scenes in other units are compared with; made when needed
-    double error;    // root mean square of the picture's error over that of the truth; NAN: left out
+    vplImage** home;     // pictures by method that scenes in other units are compared with; made when needed
+    double error;        // root mean square of the picture's error over that of the truth
+    const char* leftOut; // why there is no error; NULL: there is
 };
 
 // ---- extremes_scenes.c
@@ -78,8 +96,8 @@ vplResult buildRoomAt(vplContext* context, const RoomScene* room, vplScene** sce
 // Builds the same room by loading a scene file.
 vplResult loadRoomAt(vplContext* context, const RoomScene* room, vplScene** sceneOut);
 
-// A cube whose walls reflect rho and emit 1.
-vplResult buildFurnace(vplContext* context, double rho, vplScene** sceneOut);
+// A cube whose walls reflect rho and emit 1, seen with a field of view in radians.
+vplResult buildFurnace(vplContext* context, double rho, double fov, vplScene** sceneOut);
 
 // ---- extremes_errors.c
 
@@ -96,9 +114,34 @@ double differenceOf(const vplImage* image, const vplImage* truth, double factor)
 
 // Set trial->error.
 vplResult compareFloor(Trial* trial, const FloorScene* floor, const vplRenderOptions* options);
-vplResult compareFurnace(Trial* trial, double rho, const vplRenderOptions* options);
+vplResult compareFurnace(Trial* trial, double rho, double fov, const vplRenderOptions* options);
+
+// Whether a method's number is that of patches.
+bool hasPatches(int method);
 
 // Compares a room with the room at home; destroys the scene.
 vplResult compareRoom(Trial* trial, const RoomScene* room, vplScene* scene, vplResult made);
+
+// ---- extremes_measure.c
+
+// Measure the trial's value with its method: set trial->error or trial->leftOut.
+vplResult measureScale(Trial* trial);
+vplResult measureFileOffset(Trial* trial);
+vplResult measureOffset(Trial* trial);
+vplResult measurePlanes(Trial* trial);
+vplResult measureIntensity(Trial* trial);
+vplResult measureView(Trial* trial);
+vplResult measureLightHeight(Trial* trial);
+vplResult measureGrazing(Trial* trial);
+vplResult measureMaps(Trial* trial);
+vplResult measurePcf(Trial* trial);
+vplResult measureWidth(Trial* trial);
+vplResult measureHeight(Trial* trial);
+vplResult measureMemory(Trial* trial);
+vplResult measureReflectance(Trial* trial);
+vplResult measureFurnaceView(Trial* trial);
+vplResult measureFurnaceWidth(Trial* trial);
+vplResult measureFurnaceHeight(Trial* trial);
+vplResult measureCount(Trial* trial);
 
 #endif

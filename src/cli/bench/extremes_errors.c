@@ -4,19 +4,34 @@
 
 #include <math.h>
 
+#define SOLVED " --iterations 2000 --residual 1e-6"
+
 const Method EXTREME_METHODS[METHODS] = {
     {"direct, map", "--method direct"},
     {"direct, rays", "--method direct --light-shadows ray"},
+    {"multipass", "--method instant-radiosity --particles 100 --reflectivity auto --pipeline multipass "
+                  "--light-shadows ray"},
     {"batched", "--method keller --particles 100 --pipeline batched --light-shadows ray"},
     {"deferred", "--method keller --particles 100 --pipeline deferred --light-shadows map --light-map 64"},
     {"interleaved",
      "--method keller --particles 1000 --pipeline interleaved --interleave 4 --light-shadows ray"},
+    {"lightcuts", "--method keller --particles 1000 --pipeline lightcuts --light-shadows ray"},
     {"path", "--method path --spp 4 --pixel centre --max-bounces 8"},
     // As the document has it. By default rounding exchanges chosen lights: the room at other scales differs by 3 %.
     {"ssvp",
      "--method ssvp --rsm-size 256 --next-bounce maps --max-bounces 2 --max-clusters 8 --paraboloid 128"},
-    {"radiosity", "--method radiosity --patches 200 --iterations 2000 --residual 1e-6"},
+    {"radiosity", "--method radiosity --patches 200 --hierarchy off --gather 0" SOLVED},
+    {"links", "--method radiosity --patches 200 --hierarchy on --gather 0" SOLVED},
+    {"gather", "--method radiosity --patches 200 --hierarchy off --gather 16 --interleave 1" SOLVED},
+    {"adaptive",
+     "--method radiosity --patches 200 --patch-placement adaptive --hierarchy off --gather 0" SOLVED},
+    {"auto", "--method auto" SOLVED},
 };
+
+bool hasPatches(int method)
+{
+    return method == RADIOSITY || method == LINKS || method == GATHER || method == ADAPTIVE;
+}
 
 // ---- errors
 
@@ -88,7 +103,9 @@ vplResult compareRoom(Trial* t, const RoomScene* room, vplScene* scene, vplResul
     vplImage* image;
     const vplResult chosen = chooseOptions(t, ROOM_WIDTH, ROOM_HEIGHT, &o);
     const double w1 = o.ssvp.w1;
-    o.ssvp.w1 /= room->scale; // 1/metres
+    if (t->method == SSVP) {      // auto chooses SSVP where it is set
+        o.ssvp.w1 /= room->scale; // 1/metres
+    }
     TRY(renderOnce(scene, chosen == VPL_SUCCESS ? made : chosen, &o, &image));
     vplResult result = VPL_SUCCESS;
     if (t->home[t->method] == NULL) {
@@ -109,11 +126,11 @@ vplResult compareRoom(Trial* t, const RoomScene* room, vplScene* scene, vplResul
 // ---- a furnace
 
 // Compares the mean radiance: at pixels in corners a few samples of the area lights are far off.
-vplResult compareFurnace(Trial* t, double rho, const vplRenderOptions* o)
+vplResult compareFurnace(Trial* t, double rho, double fov, const vplRenderOptions* o)
 {
     vplScene* scene = NULL;
     vplImage* image;
-    const vplResult made = buildFurnace(t->context, rho, &scene);
+    const vplResult made = buildFurnace(t->context, rho, fov, &scene);
     TRY(renderOnce(scene, made, o, &image));
     double wanted = 0, mean = 0, power = 1;
     const int terms = t->method == DIRECT_MAP || t->method == DIRECT_RAYS ? 2

@@ -188,12 +188,12 @@ vplResult loadRoomAt(vplContext* context, const RoomScene* room, vplScene** scen
 
 // ---- a furnace: every point sends 1 / (1 - rho)
 
-vplResult buildFurnace(vplContext* context, double rho, vplScene** sceneOut)
+vplResult buildFurnace(vplContext* context, double rho, double fov, vplScene** sceneOut)
 {
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = (vplVec3){-0.3f, 0.2f, 0.9f};
-    camera.nearPlane = 0.01;
-    camera.fovY = 70 * VPL_PI / 180;
+    camera.nearPlane = 1e-7; // of 179.9 degrees, 1 m away on the axis is 1e-3 m away at the border
+    camera.fovY = fov;
     TRY(vplScene_Create(context, sceneOut));
     TRY(vplScene_AddCamera(*sceneOut, &camera, NULL));
     TRY(addMaterial(*sceneOut, rho, 1));

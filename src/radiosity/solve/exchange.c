@@ -192,6 +192,10 @@ vplResult vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* st
     }
     TRY(vplExchange_Gather(exchange, x));
     measureRows(exchange, stats);
+    if (!isfinite(stats->rowSumMean)) { // a sum of a row is beyond float
+        stats->spectralRadius = INFINITY;
+        return VPL_SUCCESS;
+    }
     for (int c = 0; c < 3; c++) {
         reflectAndMeasure(exchange, c, x->c[c]);
     }

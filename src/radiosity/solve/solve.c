@@ -70,6 +70,18 @@ static vplResult checkDef(const vplTransport* t, const vplSolveDef* def)
 
 // ---- sweeps
 
+enum { NUMBER = 40 };
+
+// Writes a number with its unit, or says in words that it is infinite.
+static const char* sayNumber(char out[NUMBER], double value, const char* unit)
+{
+    if (isfinite(value)) {
+        snprintf(out, NUMBER, "%.4g%s", value, unit);
+        return out;
+    }
+    return "beyond the range of float";
+}
+
 static vplResult failDiverging(const vplSolve* s)
 {
     vplContext* context = s->exchange.context;
@@ -78,12 +90,14 @@ static vplResult failDiverging(const vplSolve* s)
                        "after %d sweeps a radiosity is beyond the range of float; dim what emits",
                        s->stats.iterations);
     }
-    return vplFail(
-        context, VPL_LIMIT,
-        "radiosity diverges: after %d sweeps the largest is %g W/m^2, and grows; the spectral radius "
-        "of reflectance times form factors is %.4g, must be below 1; clamp the sums of rows "
-        "(--row-sums clamp) or take better form factors (--form-factors monte-carlo)",
-        s->stats.iterations, s->largest, s->stats.spectralRadius);
+    char largest[NUMBER], radius[NUMBER];
+    return vplFail(context, VPL_LIMIT,
+                   "radiosity diverges: after %d sweeps the largest is %s, and grows; the spectral radius "
+                   "of reflectance times form factors is %s, must be below 1; clamp the sums of rows "
+                   "(--row-sums clamp) or take better form factors (--form-factors monte-carlo)",
+                   s->stats.iterations,
+                   sayNumber(largest, s->finite ? s->largest : (double)INFINITY, " W/m^2"),
+                   sayNumber(radius, s->stats.spectralRadius, ""));
 }
 
 static vplResult findSpectrum(vplSolve* s)
