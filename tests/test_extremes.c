@@ -7,7 +7,6 @@
 #include "shading/light_block.h"
 #include "shading/shading.h"
 
-
 // ---- rays and particles
 
 // X019
