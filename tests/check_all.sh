@@ -71,7 +71,7 @@ TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow -PeakBy
     -ChosenTrianglesLight -NothingIsLeftTo -TJunctionsAre -AConvexBody -AFurnaceWith -PixelOfAContrast -PixelsThatDiffer
     -TreeAgreesWith -FurnaceIsUniform -DoublingTheEmitter -DocumentedLightsIn -ShadowOfALeaf -BackgroundFills -ServeBothDirections
     -KeepsAllLight -FaintSidesThat -AnUncertainTruthBeside -MorePixelsConfirm -LowersTheBound -WhereThatIsAGain -DividedBeforeThey
-    -TinyPicturesBegin"
+    -TinyPicturesBegin -FloatsKeepTheirPictures -ASymmetricRoom -PatchesAreChosenWhere -PatchesAreNotLeftFor"
 ALSO="build/gcc-asan-ubsan/vpl-golden build/gcc-asan-ubsan/nulls"
 export VPL_GOLDEN_STEP=2
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g1 -O1" SANITIZE=address,undefined
