@@ -105,10 +105,11 @@ void vplRefuseOptions(vplPlan* p)
 }
 
 // Without groups each triangle is at least one patch. Measured on two cores: 0.1 us for a pair of sides of all pairs (room), and 1 to
-// 1.5 ms for a side by links (Sibenik, Sponza); 3 to 4.6 us for a triangle that is in a group (furnished, Conference, Sibenik, Sponza).
+// 1.5 ms for a side by links (Sibenik, Sponza); 3 to 5 us for a triangle that is in a group (furnished, Conference, Sibenik, Sponza,
+// boxes).
 static double leastMsOfPatches(double triangles, bool groups)
 {
-    return groups ? 4e-3 * triangles : triangles <= VPL_ALL_PAIRS ? 1e-4 * triangles * triangles : triangles;
+    return groups ? 4.6e-3 * triangles : triangles <= VPL_ALL_PAIRS ? 1e-4 * triangles * triangles : triangles;
 }
 
 // SSVP draws all triangles into a reflective map of each emitter and, with few clusters, into about four paraboloid maps (furnished, Sponza:
