@@ -63,7 +63,7 @@ if command -v timeout >/dev/null 2>&1; then
         "merge -o $out/a.pfm $scratch/silent" \
         "tradeoff -o $out/a --reference $scratch/silent.pfm"; do # the latter has no writer yet
         # shellcheck disable=SC2086 # the words of a command
-        timeout -s TERM -k 5 0.5 "$vpl" $command "$room" 2>"$scratch/stderr"
+        timeout -s TERM -k 5 1 "$vpl" $command "$room" 2>"$scratch/stderr"
         equals "ASilentPipeIsInterruptedOnce: $command" "124 vpl: cancelled, nothing was written" "$? $(cat "$scratch/stderr")"
     done
     exec 9>&-
