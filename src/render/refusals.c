@@ -109,7 +109,9 @@ void vplRefuseOptions(vplPlan* p)
 // boxes).
 static double leastMsOfPatches(double triangles, bool groups)
 {
-    return groups ? 4.6e-3 * triangles : triangles <= VPL_ALL_PAIRS ? 1e-4 * triangles * triangles : triangles;
+    return groups                       ? 4.6e-3 * triangles
+           : triangles <= VPL_ALL_PAIRS ? 1e-4 * triangles * triangles
+                                        : triangles;
 }
 
 // SSVP draws all triangles into a reflective map of each emitter and, with few clusters, into about four paraboloid maps (furnished, Sponza:

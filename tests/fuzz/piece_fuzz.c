@@ -112,19 +112,22 @@ static vplImage* imageOf(const vplAssembly* a)
     return image;
 }
 
-// The same pieces from the last to the first.
+// The same pieces from the last to the first. One that came twice may be refused now: then the second was not read.
 static void addBackwards(vplContext* context, const uint8_t* bytes, const Pieces* p, const vplImage* image)
 {
     vplAssembly* a;
     size_t used;
     MUST(vplAssembly_Create(context, &a) == VPL_SUCCESS);
-    for (int i = p->count - 1; i >= 0; i--) {
-        MUST(vplAssembly_Add(a, bytes + p->at[i], p->at[p->count] - p->at[i], "piece", &used) == VPL_SUCCESS);
-        MUST(used == p->at[i + 1] - p->at[i]);
+    vplResult result = VPL_SUCCESS;
+    for (int i = p->count - 1; i >= 0 && result == VPL_SUCCESS; i--) {
+        result = vplAssembly_Add(a, bytes + p->at[i], p->at[p->count] - p->at[i], "piece", &used);
+        MUST(result != VPL_SUCCESS || used == p->at[i + 1] - p->at[i]);
     }
-    vplImage* other = imageOf(a);
-    MUST((other != NULL) == (image != NULL) &&
-         (image == NULL || p->twice || vplImage_Hash(other) == vplImage_Hash(image)));
+    MUST(result == VPL_SUCCESS || p->twice);
+    vplImage* other = result == VPL_SUCCESS ? imageOf(a) : NULL;
+    MUST(result != VPL_SUCCESS ||
+         ((other != NULL) == (image != NULL) &&
+          (image == NULL || p->twice || vplImage_Hash(other) == vplImage_Hash(image))));
     vplImage_Destroy(other);
     vplAssembly_Destroy(a);
 }
