@@ -129,13 +129,15 @@ static vplResult checkRender(const Loading* l)
             "--passes, --budget or --max-error",
             l->path);
     }
+    const vplOutputOptions* size = &r->plan->options.output;
     const bool truth = h->truth <= 1 << 16 && (h->truth == 0 || r->truth == NULL);
+    // Coarse pictures have no paths through pixels at edges.
+    const bool edges = h->edges[0] == 0 || (h->passes > 0 && h->edges[1] > 0 && size->pixelSize == 1);
     const bool counts =
         truth && h->rays[0] <= INT64_MAX / 4 && h->rays[1] <= INT64_MAX / 4 && h->passes <= VPL_MAX_SAMPLES &&
         h->side <= VPL_MAX_INTERLEAVE && h->tries <= VPL_MAX_SAMPLES && h->edges[0] <= VPL_MAX_EDGE_PIXELS &&
-        h->edges[1] <= VPL_MAX_SAMPLES && (h->edges[0] == 0 || (h->passes > 0 && h->edges[1] > 0)) &&
+        h->edges[1] <= VPL_MAX_SAMPLES && edges &&
         ((h->parts & VPL_STATE_PATHS) == 0 || (h->samples >= 1 && h->samples <= VPL_MAX_SAMPLES));
-    const vplOutputOptions* size = &r->plan->options.output;
     const bool fits = h->width == (uint32_t)vplRenderedWidth(size) &&
                       h->height == (uint32_t)vplRenderedHeight(size) && vplState_Size(h) == l->size;
     return counts && fits
