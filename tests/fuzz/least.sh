@@ -16,11 +16,12 @@ for name in "$@"; do
         continue
     fi
     before=$(ls "$corpus" | wc -l)
-    for file in "$corpus"/*; do
-        if basename "$file" | grep -qE '^([0-9a-f]{12}|[0-9a-f]{40})$'; then
+    for file in "$corpus"/*; do # names in $least are SHA-1 sums
+        sum=$(sha1sum "$file" | cut -d ' ' -f 1)
+        if [ -f "$least/$sum" ]; then
+            rm "$least/$sum"
+        elif basename "$file" | grep -qE '^([0-9a-f]{12}|[0-9a-f]{40})$'; then
             rm "$file"
-        else
-            rm -f "$least/$(sha1sum "$file" | cut -d ' ' -f 1)" # a word's input is there
         fi
     done
     for file in "$least"/*; do
