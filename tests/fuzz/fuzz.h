@@ -58,6 +58,23 @@ static inline vplContext* openFuzzContext(FuzzLog* log)
     return context;
 }
 
+// A floor under a lamp.
+static inline vplScene* makeFuzzScene(vplContext* context)
+{
+    vplScene* scene;
+    vplMaterialDef material = vplDefaultMaterialDef();
+    vplObjectDef object = vplDefaultObjectDef();
+    vplCameraDef camera = vplDefaultCameraDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    emitter.position = (vplVec3){0, 0, 2};
+    MUST(vplScene_Create(context, &scene) == VPL_SUCCESS);
+    MUST(vplScene_AddMaterial(scene, &material, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddObject(scene, &object, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddCamera(scene, &camera, NULL) == VPL_SUCCESS);
+    MUST(vplScene_AddEmitter(scene, &emitter, NULL) == VPL_SUCCESS);
+    return scene;
+}
+
 static inline void closeFuzzContext(vplContext* context)
 {
     MUST(vplContext_GetBytes(context) == 0);

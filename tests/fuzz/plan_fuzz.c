@@ -13,23 +13,6 @@
 
 #define FOLDER "/proc/self/fd/"
 
-// A floor under a lamp.
-static vplScene* makeScene(vplContext* context)
-{
-    vplScene* scene;
-    vplMaterialDef material = vplDefaultMaterialDef();
-    vplObjectDef object = vplDefaultObjectDef();
-    vplCameraDef camera = vplDefaultCameraDef();
-    vplEmitterDef emitter = vplDefaultEmitterDef();
-    emitter.position = (vplVec3){0, 0, 2};
-    MUST(vplScene_Create(context, &scene) == VPL_SUCCESS);
-    MUST(vplScene_AddMaterial(scene, &material, NULL) == VPL_SUCCESS);
-    MUST(vplScene_AddObject(scene, &object, NULL) == VPL_SUCCESS);
-    MUST(vplScene_AddCamera(scene, &camera, NULL) == VPL_SUCCESS);
-    MUST(vplScene_AddEmitter(scene, &emitter, NULL) == VPL_SUCCESS);
-    return scene;
-}
-
 // Plans, and lists the options that make the plan again. Returns false where the render is refused.
 static bool listPlan(const vplScene* scene, const vplRenderOptions* options, vplByteBuffer* text)
 {
@@ -61,7 +44,7 @@ static vplRenderOptions readList(char* list)
 
 static void replay(vplContext* context, vplRenderOptions options)
 {
-    vplScene* scene = makeScene(context);
+    vplScene* scene = makeFuzzScene(context);
     vplByteBuffer first, second = {.bytes = NULL};
     MUST(vplRenderOptions_SetAll(&options, SMALL " --quality none --budget 0 --max-error 0") == VPL_SUCCESS);
     if (listPlan(scene, &options, &first)) {

@@ -14,23 +14,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-// A floor under a lamp.
-static vplScene* makeScene(vplContext* context)
-{
-    vplScene* scene;
-    vplMaterialDef material = vplDefaultMaterialDef();
-    vplObjectDef object = vplDefaultObjectDef();
-    vplCameraDef camera = vplDefaultCameraDef();
-    vplEmitterDef emitter = vplDefaultEmitterDef();
-    emitter.position = (vplVec3){0, 0, 2};
-    MUST(vplScene_Create(context, &scene) == VPL_SUCCESS);
-    MUST(vplScene_AddMaterial(scene, &material, NULL) == VPL_SUCCESS);
-    MUST(vplScene_AddObject(scene, &object, NULL) == VPL_SUCCESS);
-    MUST(vplScene_AddCamera(scene, &camera, NULL) == VPL_SUCCESS);
-    MUST(vplScene_AddEmitter(scene, &emitter, NULL) == VPL_SUCCESS);
-    return scene;
-}
-
 // Renders in passes: every way in which sums are kept. Radiosity has no passes, so only a budget or an error gives it a state.
 static const char* const CASES[] = {
     "--method path",
@@ -139,7 +122,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
 {
     FuzzLog log = {{0}, 0};
     vplContext* context = openFuzzContext(&log);
-    vplScene* scene = makeScene(context);
+    vplScene* scene = makeFuzzScene(context);
     vplStateHeader h;
     const int only = caseOf(bytes, size, &h);
     for (int i = only >= 0 ? only : 0; i < (only >= 0 ? only + 1 : FIXED_CASES); i++) {
