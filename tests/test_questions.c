@@ -90,20 +90,26 @@ static vplLightSet spreadLights(vplContext* context, vplVirtualLight* lights, in
     return (vplLightSet){.lights = lights, .lightCount = count, .particleCount = count, .context = context};
 }
 
+// Counts the questions of a clustering that nothing cancels and that takes some iterations.
+static int countQuestions(vplContext* context, const vplLightSet* set, int clusters, int* iterationsOut)
+{
+    Questions q = {0, 0};
+    assert_int_equal(findClusters(context, set, clusters, &q, iterationsOut), VPL_SUCCESS);
+    assert_true(*iterationsOut > 4);
+    return q.count;
+}
+
 // Each cluster that is placed is compared with all lights, and each search compares all lights with clusters that moved.
 TEST(ClusteringOfManyLightsAsksForEachClusterAndEachTask, 1)
 {
     enum { LIGHTS = 5000, CLUSTERS = 100, TASKS = (LIGHTS + VPL_CLUSTER_TASK - 1) / VPL_CLUSTER_TASK };
     static vplVirtualLight lights[LIGHTS];
     const vplLightSet set = spreadLights(context, lights, LIGHTS);
-    Questions q = {0, 0};
     int iterations;
-    assert_int_equal(findClusters(context, &set, CLUSTERS, &q, &iterations), VPL_SUCCESS);
-    assert_true(iterations > 4);
-    assert_true(q.count >= CLUSTERS + TASKS * (iterations + 1));
-    const int last = q.count;
+    const int last = countQuestions(context, &set, CLUSTERS, &iterations);
+    assert_true(last >= CLUSTERS + TASKS * (iterations + 1));
     for (int at = 1; at <= last; at += 1 + at / 4) {
-        q = (Questions){0, at};
+        Questions q = {0, at};
         assert_int_equal(findClusters(context, &set, CLUSTERS, &q, &iterations), VPL_CANCELLED);
         assert_int_equal(q.count, at);
     }
@@ -115,9 +121,7 @@ TEST(ClusteringOfFewLightsAsksInEachIteration, 1)
     enum { LIGHTS = 300, CLUSTERS = 20 };
     static vplVirtualLight lights[LIGHTS];
     const vplLightSet set = spreadLights(context, lights, LIGHTS);
-    Questions q = {0, 0};
     int iterations;
-    assert_int_equal(findClusters(context, &set, CLUSTERS, &q, &iterations), VPL_SUCCESS);
-    assert_true(iterations > 4);
-    assert_true(q.count >= CLUSTERS + iterations);
+    const int count = countQuestions(context, &set, CLUSTERS, &iterations);
+    assert_true(count >= CLUSTERS + iterations);
 }

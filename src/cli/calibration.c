@@ -86,28 +86,12 @@ static bool nameFile(const vplContext* context, bool create, char path[PATH_MAX]
     return length > 0 && length < PATH_MAX && (!create || access(folder, W_OK | X_OK) == 0);
 }
 
-// Reads JSON without a word; NULL where the file is not there or not good.
-static json_t* readQuietly(const char* path)
-{
-    struct stat info;
-    const bool small = stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size <= LARGEST_FILE;
-    vplContext* silent = NULL;
-    char* text = NULL;
-    size_t size;
-    json_t* root = NULL;
-    if (small && vplContext_Create(NULL, &silent) == VPL_SUCCESS &&
-        vplReadFile(silent, path, &text, &size) == VPL_SUCCESS) {
-        root = json_loadb(text, size, 0, NULL);
-    }
-    vplBytes_Free(silent, (uint8_t*)text);
-    vplContext_Destroy(silent);
-    return root;
-}
-
 // Returns false unless the file is there and good.
 static bool readSpeeds(const char* path, vplSpeeds* speedsOut)
 {
-    json_t* root = readQuietly(path);
+    struct stat info;
+    const bool small = stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size <= LARGEST_FILE;
+    json_t* root = small ? json_load_file(path, 0, NULL) : NULL;
     vplSpeeds speeds = {0};
     bool good = root != NULL;
     for (int i = 0; i < FIELD_COUNT && good; i++) {

@@ -113,7 +113,7 @@ static void samplePiece(const vplEmission* e, int first, int end, int n, double 
     }
 }
 
-// Whether each piece has one of n points of the sources first .. end - 1.
+// True if each piece has at least one of n points that lie on the sources first .. end - 1.
 static bool everyPieceHasAPoint(const vplEmission* e, int first, int end, int n)
 {
     for (int at = first, done = 0; at < end;) {

@@ -187,7 +187,7 @@ vplResult vplClusterSearch_Run(vplClusterSearch* s, vplLightClusters* clusters)
     s->hashes[0] = hashAssignment(s);
     clusters->end = VPL_CLUSTERS_STOPPED;
     while (clusters->end == VPL_CLUSTERS_STOPPED && clusters->iterations < s->maxIterations) {
-        TRY(vplAsk(s->context)); // few pairs do not ask
+        TRY(vplAsk(s->context)); // assign asks between tasks, and few pairs are one task
         update(s);
         clusters->iterations++;
         TRY(assign(s, &changed));

@@ -144,7 +144,7 @@ static void addPass(vplAssembly* a, const vplWaiting* w)
     vplFree(a->context, w->values);
 }
 
-// Adds a pass and those of its band that waited for it, or lets it wait. There is room for it.
+// Adds a pass whose turn it is, and those of its band that waited for it. Any other pass waits; the list has room for one more.
 static void addOrWait(vplAssembly* a, const vplWaiting* w)
 {
     const vplPiecePlace place = vplPieceGrid_Place(&a->first.grid, w->index);
@@ -176,16 +176,6 @@ bool vplAssembly_Has(const vplAssembly* a, int index)
            (index % g->passes < a->next[index / g->passes] || waits(a, findWaiting(a, index), index));
 }
 
-// True if the sum of two such values is a float, also where rounding has added to them.
-static bool areSmall(const float* values, size_t count)
-{
-    bool small = true;
-    for (size_t k = 0; k < count; k++) {
-        small = small && fabsf(values[k]) <= FLT_MAX / 4;
-    }
-    return small;
-}
-
 // Takes the floats of a piece over.
 static vplResult take(vplAssembly* a, const vplPieceHeader* h, const uint8_t* bytes, const char* name)
 {
@@ -209,8 +199,10 @@ static vplResult take(vplAssembly* a, const vplPieceHeader* h, const uint8_t* by
     } else if (h->splits) {
         vplStream_Floats(&s, a->direct->pixels + first, place.values);
     }
-    const bool small =
-        !h->mean || (areSmall(a->base->pixels + first, place.values) && areSmall(values, count));
+    // The sum of two such values is a float, also where rounding has added to them.
+    const double most = (double)FLT_MAX / 4;
+    const bool small = !h->mean || (vplStream_AreSmall(a->base->pixels + first, place.values, most) &&
+                                    vplStream_AreSmall(values, count, most));
     if (!s.finite || !small) {
         vplFree(a->context, values);
         return vplFail(a->context, VPL_PARSE_ERROR, "%s: a piece has values that are no numbers%s", name,

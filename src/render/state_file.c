@@ -127,15 +127,6 @@ static bool areBetween(const double* values, size_t count, double least, double 
     return between;
 }
 
-static bool areSmall(const float* values, size_t count, double most)
-{
-    bool small = true;
-    for (size_t k = 0; k < count; k++) {
-        small = small && fabs((double)values[k]) <= most;
-    }
-    return small;
-}
-
 bool vplState_AreSumsValid(const vplRenderer* r, uint32_t parts, double weight)
 {
     const double most = (double)FLT_MAX / 4; // light of the first pass and the mean of all are added
@@ -146,10 +137,11 @@ bool vplState_AreSumsValid(const vplRenderer* r, uint32_t parts, double weight)
     }
     if ((parts & VPL_STATE_PASSES) != 0) {
         const size_t values = vplValueCount(r->base);
-        valid = valid && areSmall(r->base->pixels, values, most) &&
-                areBetween(r->sums[0], values, -most * weight, most * weight) &&
-                areBetween(r->sums[1], values, 0, DBL_MAX / 4) &&
-                ((parts & VPL_STATE_DIRECT) == 0 || areSmall(r->direct->pixels, values, most * weight));
+        valid =
+            valid && vplStream_AreSmall(r->base->pixels, values, most) &&
+            areBetween(r->sums[0], values, -most * weight, most * weight) &&
+            areBetween(r->sums[1], values, 0, DBL_MAX / 4) &&
+            ((parts & VPL_STATE_DIRECT) == 0 || vplStream_AreSmall(r->direct->pixels, values, most * weight));
     }
     return valid;
 }

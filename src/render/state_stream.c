@@ -48,6 +48,15 @@ void vplStream_Floats(vplStream* s, float* values, size_t count)
     }
 }
 
+bool vplStream_AreSmall(const float* values, size_t count, double most)
+{
+    bool small = true;
+    for (size_t k = 0; k < count; k++) {
+        small = small && fabs((double)values[k]) <= most;
+    }
+    return small;
+}
+
 uint64_t vplState_Checksum(const uint8_t* bytes, size_t size)
 {
     vplStream s = {.bytes = (uint8_t*)bytes};

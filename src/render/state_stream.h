@@ -20,6 +20,9 @@ void vplStream_Long(vplStream* s, uint64_t* value);
 void vplStream_Doubles(vplStream* s, double* values, size_t count);
 void vplStream_Floats(vplStream* s, float* values, size_t count);
 
+// True if no value is farther from 0 than `most`.
+bool vplStream_AreSmall(const float* values, size_t count, double most);
+
 // Computes the checksum of the first `size` bytes, a multiple of 4. It is the last word of a file.
 uint64_t vplState_Checksum(const uint8_t* bytes, size_t size);
 

@@ -131,15 +131,15 @@ static void runSweep(const Arguments* a, const Trial* first, const ExtremeSweep*
     }
 }
 
-// What stands above the whole table.
+// Prints what stands above the table: how it is read, and the options of each method.
 static void printMethods(void)
 {
     printf(
         "vpl bench --extremes: errors of pictures, root mean square over that of the truth. A letter is a "
-        "refusal or what is "
-        "left out; its sentence\nstands below its sweep. An error above the last line of its sweep, which is "
-        "what is "
-        "promised, has a mark. A floor alone has no indirect\nlight: all methods show its direct light.\n\n");
+        "refusal or what is left out; its sentence\n"
+        "stands below its sweep. An error above the last line of its sweep, which is what is promised, has "
+        "a mark. A floor alone has no indirect\n"
+        "light: all methods show its direct light.\n\n");
     for (int m = 0; m < METHODS; m++) {
         printf("%14s  %s\n", EXTREME_METHODS[m].name, EXTREME_METHODS[m].words);
     }

@@ -116,7 +116,7 @@ double differenceOf(const vplImage* image, const vplImage* truth, double factor)
 vplResult compareFloor(Trial* trial, const FloorScene* floor, const vplRenderOptions* options);
 vplResult compareFurnace(Trial* trial, double rho, double fov, const vplRenderOptions* options);
 
-// Whether a method's number is that of patches.
+// True for the methods whose light is exchanged by patches.
 bool hasPatches(int method);
 
 // Compares a room with the room at home; destroys the scene.
