@@ -102,6 +102,7 @@ VERSION        := $(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl
 SONAME         := libvpl.so.$(shell echo $(VERSION) | sed -e 's/^\(0\.[0-9]*\).*/\1/' -e 's/^\([1-9][0-9]*\)\..*/\1/')
 SHARED         := libvpl.so.$(VERSION)
 # Calls with wrong arguments are written by a Python program.
+NO_MEMORY      := $(if $(SANITIZE),,$(BUILD)/no-memory.so)
 NULLS          := $(if $(shell command -v python3),$(BUILD)/nulls)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c examples/tasks/*.c))
 
@@ -137,7 +138,7 @@ test: deps
 	@$(MAKE) --no-print-directory $(JOBS) test-programs
 	@tests/run.sh $(BUILD)
 
-test-programs: programs $(NULLS) $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS) $(BUILD)/soak
+test-programs: programs $(NULLS) $(NO_MEMORY) $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS) $(BUILD)/soak
 
 ## make check-all   installs what is missing, the tests under gcc and clang, release, debug, sanitizers, threads, aarch64
 check-all: deps
@@ -221,6 +222,7 @@ soak: deps
 ## make faults      every allocation fails once, every method is cancelled at every call; 300 interrupts at random moments
 faults: test-programs
 	VPL_EVERY_FAULT=1 $(BUILD)/vpl-tests FailedAllocation CancelledAtEveryCall
+	VPL_EVERY_FAULT=1 tests/cli/run.sh $(BUILD)/vpl memory
 	tests/signals.sh $(BUILD)/vpl 300
 
 ## make test-mpi    vpl-mpi: installs OpenMPI, MPICH and Slurm, builds it with both, tests 1 to 8 ranks and the batch scripts
@@ -368,6 +370,10 @@ $(BUILD)/nulls-calls.c: tests/nulls/generate.py $(wildcard include/vpl/*.h)
 $(BUILD)/nulls: $(BUILD)/nulls-calls.c $(wildcard tests/nulls/*.[ch]) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -O0 -Itests/nulls -o $@ $(filter %.c %.a,$^) $(LDLIBS)
+
+$(BUILD)/no-memory.so: tests/cli/no_memory.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(ALL_CFLAGS) -fPIC -fvisibility=default -shared -o $@ $< -ldl
 
 $(BUILD)/soak: $(BUILD)/obj/tests/fuzz/soak.o $(BUILD)/obj/tests/fuzz/valid_fuzz.o $(BUILD)/libvpl.a
 	@echo "  LD  $@"

@@ -96,7 +96,8 @@ bool isGiven(const Arguments* a, const char* name)
 
 static Arguments defaultArguments(const char* command)
 {
-    Arguments a = {.command = findCommand(command), .frames = {0, -1}, .ppd = VPL_DEFAULT_PPD};
+    Arguments a = {
+        .command = findCommand(command), .failure = EXIT_USAGE, .frames = {0, -1}, .ppd = VPL_DEFAULT_PPD};
     a.render = vplDefaultRenderOptions();
     a.context = vplDefaultContextDef();
     for (const Option* o = getOptions(); o->name != NULL; o++) {
@@ -157,45 +158,44 @@ static void warnOfUnused(const Arguments* a)
     }
 }
 
-bool parseArguments(int count, const char* const* words, Arguments* arguments)
+bool parseArguments(int count, const char* const* words, Arguments* a)
 {
-    Arguments a = defaultArguments(words[1]);
-    a.words = words;
-    a.wordCount = count;
+    *a = defaultArguments(words[1]);
+    a->words = words;
+    a->wordCount = count;
     for (int i = 2; i < count; i++) {
-        if (words[i][0] == '-' && words[i][1] != 0 && !readOption(&a, &i, true)) {
+        if (words[i][0] == '-' && words[i][1] != 0 && !readOption(a, &i, true)) {
             return false;
         }
     }
     for (int i = 2; i < count; i++) {
         if (words[i][0] == '-' && words[i][1] != 0) {
-            if (!readOption(&a, &i, false)) {
+            if (!readOption(a, &i, false)) {
                 return false;
             }
-        } else if (a.positionalCount == a.command->positionals) {
-            complain("%s: one word too many: \"%s\"", a.command->name, words[i]);
+        } else if (a->positionalCount == a->command->positionals) {
+            complain("%s: one word too many: \"%s\"", a->command->name, words[i]);
             return false;
         } else {
-            a.positionals[a.positionalCount++] = words[i];
+            a->positionals[a->positionalCount++] = words[i];
         }
     }
-    if (a.output != NULL && strcmp(a.output, "-") == 0 && a.command->bit == RENDER) {
-        a.output = "-.png";
+    if (a->output != NULL && strcmp(a->output, "-") == 0 && a->command->bit == RENDER) {
+        a->output = "-.png";
     }
-    if (a.positionalCount > 0 && strcmp(a.positionals[0], "-") == 0) {
-        a.positionals[0] = "/dev/stdin";
+    if (a->positionalCount > 0 && strcmp(a->positionals[0], "-") == 0) {
+        a->positionals[0] = "/dev/stdin";
     }
-    if (a.environment != NULL && a.sky != NULL) {
+    if (a->environment != NULL && a->sky != NULL) {
         complain("--environment and --sky are both given, must be one of them");
         return false;
     }
-    warnOfUnused(&a);
-    if (a.noGround && !a.quiet && a.positionalCount > 0 && !vplIsModelPath(a.positionals[0])) {
+    warnOfUnused(a);
+    if (a->noGround && !a->quiet && a->positionalCount > 0 && !vplIsModelPath(a->positionals[0])) {
         complain(
             "warning: --no-ground has no effect with %s, only with a model (.obj, .ply, .stl, .gltf, .glb)",
-            a.positionals[0]);
+            a->positionals[0]);
     }
-    *arguments = a;
     return true;
 }
 

@@ -130,7 +130,7 @@ static bool writeSpeeds(const char* path, const vplSpeeds* speeds)
 
 // ---- the two uses
 
-void findSpeeds(const Arguments* a, vplContext* context)
+vplResult findSpeeds(const Arguments* a, vplContext* context)
 {
     const vplStopOptions* stop = &a->render.stop;
     const bool budget = stop->budgetMs > 0 || stop->quality != VPL_QUALITY_NONE;
@@ -138,12 +138,13 @@ void findSpeeds(const Arguments* a, vplContext* context)
     char path[PATH_MAX];
     vplSpeeds speeds;
     if (nameFile(context, false, path) && readSpeeds(path, &speeds)) {
-        vplContext_SetSpeeds(context, &speeds);
-    } else if (needed && nameFile(context, true, path)) {
-        const bool measured = vplSpeeds_Measure(context, &speeds) == VPL_SUCCESS;
-        const bool kept =
-            measured && vplContext_SetSpeeds(context, &speeds) == VPL_SUCCESS && writeSpeeds(path, &speeds);
-        if (a->verbose && measured) {
+        return vplContext_SetSpeeds(context, &speeds);
+    }
+    if (needed && nameFile(context, true, path)) {
+        TRY(vplSpeeds_Measure(context, &speeds));
+        TRY(vplContext_SetSpeeds(context, &speeds));
+        const bool kept = writeSpeeds(path, &speeds);
+        if (a->verbose) {
             complain("measured the speeds of this machine, %s %s",
                      kept ? "kept in" : "which could not be kept in", path);
         }
@@ -152,17 +153,18 @@ void findSpeeds(const Arguments* a, vplContext* context)
                  "those of the "
                  "machine of our benchmarks");
     }
+    return VPL_SUCCESS;
 }
 
 int runCalibration(const Arguments* a)
 {
     char path[PATH_MAX];
     vplSpeeds speeds;
-    vplContext* context = openContext(a);
-    if (context == NULL) {
-        return EXIT_USAGE;
+    vplContext* context;
+    int code = exitCode(openContext(a, &context), true);
+    if (code == EXIT_DONE) {
+        code = exitCode(vplSpeeds_Measure(context, &speeds), false);
     }
-    int code = exitCode(vplSpeeds_Measure(context, &speeds), false);
     const bool kept = code == EXIT_DONE && nameFile(context, true, path) && writeSpeeds(path, &speeds);
     vplContext_Destroy(context);
     if (code == EXIT_DONE && a->json) {

@@ -77,6 +77,7 @@ struct Arguments {
     double ppd;                      // pixels per degree of vision
     double exposure;                 // stops, or VPL_EXPOSURE_AUTO
     int tonemap;                     // 0: as usual with what is shown; else 1 + a vplToneMap
+    int failure;                     // exit code if the words are refused: EXIT_USAGE unless memory ran out
     int frames[2];                   // first and last; [1] < 0: one picture without a number
     int tile[2];                     // --tile: part, from 1 on, and parts; 0: the whole picture
     int region[4];                   // x, y, width, height; width 0: all of the picture
@@ -89,8 +90,8 @@ struct Arguments {
     bool all, scaling, extremes, calibrate, json, explain, dryRun, noGround, noPartial, quiet, verbose, help;
 };
 
-// Fills `arguments`, or prints one sentence to stderr and returns false.
-bool parseArguments(int count, const char* const* words, Arguments* arguments);
+// Fills *a, or prints one sentence to stderr and returns false: a->failure is the exit code then.
+bool parseArguments(int count, const char* const* words, Arguments* a);
 
 // Returns true if the command line names an option; the name is without dashes.
 bool isGiven(const Arguments* arguments, const char* name);
@@ -117,8 +118,8 @@ void setSpeaker(const char* name);
 // Prints messages of the library as --quiet and -v ask for. Takes the Arguments.
 vplLogFcn logToStderr;
 
-// Makes a context that logs to stderr; NULL after complaining.
-vplContext* openContext(const Arguments* arguments);
+// Makes a context that logs to stderr, as it does its own failure; NULL then.
+vplResult openContext(const Arguments* arguments, vplContext** contextOut);
 
 // Plans a render as renderPicture does it: it can be interrupted.
 vplResult planRender(const Arguments* arguments, const vplScene* scene, vplPlan** planOut);
@@ -172,6 +173,10 @@ vplProgressFcn askInterrupts;
 // Infinity and NaN become null, because JSON has no such numbers.
 json_t* numberJson(double value);
 json_t* integersJson(const int* values, int count);
+
+// Ends the program where jansson lacks memory: jansson itself asserts, takes text for wrong or leaves values out. Nobody reads or makes JSON
+// while a file is being written.
+void guardJson(void);
 
 // Writes JSON to a file, or to stdout if the path is NULL, and frees it. Complains unless it returns
 // EXIT_DONE.

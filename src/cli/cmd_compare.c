@@ -154,12 +154,9 @@ int runCompare(const Arguments* a)
     if (a->heatmap != NULL && !checkOutput(a->heatmap)) {
         return EXIT_COULD_NOT;
     }
-    vplContext* context = openContext(a);
-    if (context == NULL) {
-        return EXIT_USAGE;
-    }
+    vplContext* context;
     vplImage* images[2] = {NULL, NULL};
-    int code = EXIT_DONE;
+    int code = exitCode(openContext(a, &context), true);
     for (int i = 0; i < 2 && code == EXIT_DONE; i++) {
         code = exitCode(vplImage_Read(context, a->positionals[i], &images[i]), true);
     }

@@ -138,9 +138,12 @@ int runMerge(const Arguments* a)
     if (!checkOutput(a->output)) {
         return EXIT_COULD_NOT;
     }
-    vplContext* context = openContext(a);
+    vplContext* context;
     vplImage* image = NULL;
-    int code = context != NULL ? exitCode(mergeParts(a, context, &image), true) : EXIT_USAGE;
+    int code = exitCode(openContext(a, &context), true);
+    if (code == EXIT_DONE) {
+        code = exitCode(mergeParts(a, context, &image), true);
+    }
     if (code == EXIT_DONE) {
         code = writeWholePicture(a, image);
     }

@@ -9,7 +9,7 @@ static int runCommand(const Command* command, int count, const char* const* word
 {
     Arguments arguments;
     if (!parseArguments(count, words, &arguments)) {
-        return EXIT_USAGE;
+        return arguments.failure;
     }
     if (arguments.help) {
         printHelp(command->name, NULL);
@@ -30,6 +30,7 @@ int main(int count, char** words)
 {
     signal(SIGPIPE, SIG_IGN); // writing to a closed pipe then fails, and is reported
     signal(SIGXFSZ, SIG_IGN); // so is writing beyond the file size limit
+    guardJson();
 #ifdef _WIN32
     _setmode(STDOUT_FILENO, O_BINARY); // pictures go there, too
 #endif

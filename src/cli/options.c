@@ -172,11 +172,17 @@ static bool readThreads(const Option* o, const char* value, Arguments* a)
 // The context serves this file alone.
 static bool readPlan(const Option* o, const char* value, Arguments* a)
 {
-    vplContext* context = readText(o, value, a) ? openContext(a) : NULL;
-    const bool read =
-        context != NULL && vplRenderOptions_Load(context, value, &a->render, &a->planScene) == VPL_SUCCESS;
+    vplContext* context;
+    if (!readText(o, value, a)) {
+        return false;
+    }
+    vplResult result = openContext(a, &context);
+    if (result == VPL_SUCCESS) {
+        result = vplRenderOptions_Load(context, value, &a->render, &a->planScene);
+    }
     vplContext_Destroy(context);
-    return read;
+    a->failure = result == VPL_OUT_OF_MEMORY ? EXIT_COULD_NOT : a->failure;
+    return result == VPL_SUCCESS;
 }
 
 static bool readRender(const Option* o, const char* value, Arguments* a)

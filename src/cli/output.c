@@ -80,8 +80,9 @@ bool numberName(const char* name, int number, int last, char* out, size_t size)
 bool writeTextFile(const char* path, const char* text)
 {
     const Arguments quiet = {.context = vplDefaultContextDef(), .quiet = true};
-    vplContext* context = openContext(&quiet);
-    const bool written = context != NULL && vplWriteFile(context, path, text, strlen(text)) == VPL_SUCCESS;
+    vplContext* context;
+    const bool written = openContext(&quiet, &context) == VPL_SUCCESS &&
+                         vplWriteFile(context, path, text, strlen(text)) == VPL_SUCCESS;
     vplContext_Destroy(context);
     return written;
 }
@@ -100,12 +101,27 @@ json_t* integersJson(const int* values, int count)
     return array;
 }
 
+static void* allocateJson(size_t size)
+{
+    void* block = malloc(size);
+    if (block == NULL) {
+        complain("out of memory: %zu bytes wanted for JSON", size);
+        exit(EXIT_COULD_NOT);
+    }
+    return block;
+}
+
+void guardJson(void)
+{
+    json_set_alloc_funcs(allocateJson, free);
+}
+
 int writeJson(json_t* root, int digits, const char* path)
 {
     char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
     json_decref(root);
     bool written = text != NULL;
-    if (text == NULL) {
+    if (!written) {
         complain("%s: out of memory while writing JSON", path != NULL ? path : "standard output");
     } else if (path != NULL) {
         written = writeTextFile(path, text);

@@ -52,17 +52,18 @@ static size_t usableBytes(void)
     return pages > 0 && size > 0 ? (size_t)pages / 10 * 9 * (size_t)size : 0;
 }
 
-vplContext* openContext(const Arguments* arguments)
+vplResult openContext(const Arguments* arguments, vplContext** contextOut)
 {
     vplContextDef def = arguments->context;
     def.log = logToStderr;
     def.logUser = (void*)arguments;
-    vplContext* context = NULL;
-    if (vplContext_Create(&def, &context) == VPL_SUCCESS) {
+    *contextOut = NULL;
+    const vplResult result = vplContext_Create(&def, contextOut);
+    if (result == VPL_SUCCESS) {
         const size_t mib = (size_t)arguments->memoryMib << 20;
-        vplContext_SetMemoryLimit(context, mib > 0 ? mib : usableBytes());
+        vplContext_SetMemoryLimit(*contextOut, mib > 0 ? mib : usableBytes());
     }
-    return context;
+    return result;
 }
 
 vplResult loadNamedScene(const Arguments* a, vplContext* context, vplScene** sceneOut)
@@ -145,18 +146,18 @@ int explainPlan(const Arguments* a, const vplScene* scene)
 
 int runOnScene(const Arguments* a, SceneWork* work)
 {
-    vplContext* context = openContext(a);
-    if (context == NULL) {
-        return EXIT_USAGE;
-    }
+    vplContext* context;
     vplScene* scene = NULL;
-    int code = exitCode(loadNamedScene(a, context, &scene), true);
+    int code = exitCode(openContext(a, &context), true);
+    if (code == EXIT_DONE) {
+        code = exitCode(loadNamedScene(a, context, &scene), true);
+    }
     if (code == EXIT_DONE && a->planIn != NULL && !a->quiet && a->planScene != vplScene_GetHash(scene)) {
         complain("warning: %s was made for another scene, or %s was changed since: the picture will differ",
                  a->planIn, a->positionals[0]);
     }
     if (code == EXIT_DONE) {
-        findSpeeds(a, context);
+        code = exitCode(findSpeeds(a, context), false);
     }
     if (code == EXIT_DONE && (a->explain || a->dryRun)) {
         code = explainPlan(a, scene);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image/exr.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -31,6 +32,14 @@ static void keepReason(exr_const_context_t exr, exr_result_t code, const char* m
         s->reason[length] = (char)(printable ? message[length] : '?');
     }
     s->reason[length] = 0;
+}
+
+// OpenEXRCore holds the lock of a file that is written while it reports that memory ran out, so this must ask the file nothing.
+static void ignoreReason(exr_const_context_t exr, exr_result_t code, const char* message)
+{
+    (void)exr;
+    (void)code;
+    (void)message;
 }
 
 static int64_t readStream(exr_const_context_t exr, void* user, void* to, uint64_t size, uint64_t offset,
@@ -86,7 +95,7 @@ static void closeStream(exr_const_context_t exr, void* user, int failed)
 exr_context_initializer_t vplDescribeExrStream(vplExrStream* s)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = keepReason;
+    init.error_handler_fn = s->buffer ? ignoreReason : keepReason;
     init.user_data = s;
     init.read_fn = s->buffer ? NULL : readStream;
     init.size_fn = s->buffer ? NULL : sizeStream;
@@ -94,6 +103,11 @@ exr_context_initializer_t vplDescribeExrStream(vplExrStream* s)
     init.destroy_fn = closeStream;
     init.max_image_width = init.max_image_height = VPL_MAX_IMAGE_SIZE;
     return init;
+}
+
+bool vplExrLacksMemory(exr_result_t result)
+{
+    return result == EXR_ERR_OUT_OF_MEMORY || (result != EXR_ERR_SUCCESS && errno == ENOMEM);
 }
 
 // ---- channels

@@ -26,11 +26,15 @@ typedef struct vplExrStream {
     const uint8_t* bytes; // to read
     size_t size;
     vplByteBuffer* buffer; // to write
-    char reason[160];      // of the first error, which OpenEXRCore would print
+    char reason[160];      // of the first error of reading, which OpenEXRCore would print
 } vplExrStream;
 
 // The set-up of an OpenEXRCore context that uses the stream, to write if the stream has a buffer, else to read.
 exr_context_initializer_t vplDescribeExrStream(vplExrStream* stream);
+
+// Whether memory ran out in calls of OpenEXRCore of which the last returned `result`, if errno was 0 before them. zlib without memory is reported
+// as corrupt data, but malloc sets errno.
+bool vplExrLacksMemory(exr_result_t result);
 
 // Finds the place of a channel of the layer `name` in our pixels: 0 for red to 2 for blue, or -1. Grey and single channels are stored in red
 // first.

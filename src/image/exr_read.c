@@ -17,6 +17,7 @@ vplResult vplDecodeExrLayer(vplContext* context, const char* path, const char* n
 
 #else
 
+#include <errno.h>
 #include <string.h>
 
 typedef struct Layout {
@@ -102,7 +103,7 @@ static exr_result_t readRows(exr_context_t exr, const Layout* layout, vplImage* 
 static vplResult failReading(vplContext* context, const char* path, const vplExrStream* stream,
                              exr_result_t r)
 {
-    if (r == EXR_ERR_OUT_OF_MEMORY) {
+    if (vplExrLacksMemory(r)) {
         return vplFail(context, VPL_OUT_OF_MEMORY, "%s: out of memory while decoding", path);
     }
     return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read the EXR picture: %s", path,
@@ -136,6 +137,7 @@ vplResult vplDecodeExrLayer(vplContext* context, const char* path, const char* n
     vplExrStream stream = {.bytes = bytes, .size = size};
     const exr_context_initializer_t init = vplDescribeExrStream(&stream);
     exr_context_t exr = NULL;
+    errno = 0;
     const exr_result_t r = exr_start_read(&exr, "picture.exr", &init);
     if (r != EXR_ERR_SUCCESS) {
         return failReading(context, path, &stream, r);

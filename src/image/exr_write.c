@@ -14,6 +14,7 @@ vplResult vplEncodeExrLayers(const vplLayer* layers, int count, vplByteBuffer* b
 
 #else
 
+#include <errno.h>
 #include <stdio.h>
 
 // Adds the channels of layer i. A channel that is added twice would make OpenEXRCore hang when the file is closed, so it is refused.
@@ -120,6 +121,7 @@ vplResult vplEncodeExrLayers(const vplLayer* layers, int count, vplByteBuffer* b
     const exr_context_initializer_t init = vplDescribeExrStream(&stream);
     exr_context_t exr = NULL;
     exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
+    errno = 0;
     exr_result_t r = encode(&exr, layers, count, &pipeline, &init);
     exr_encoding_destroy(exr, &pipeline);
     const exr_result_t finished = exr_finish(&exr);
@@ -127,11 +129,11 @@ vplResult vplEncodeExrLayers(const vplLayer* layers, int count, vplByteBuffer* b
     if (r == EXR_ERR_SUCCESS || buffer->failed) {
         return VPL_SUCCESS; // the caller checks the buffer
     }
-    if (r == EXR_ERR_OUT_OF_MEMORY) {
+    if (vplExrLacksMemory(r)) {
         return vplFail(context, VPL_OUT_OF_MEMORY, "out of memory while encoding an EXR picture");
     }
     return vplFail(context, VPL_INVALID_ARGUMENT, "cannot encode an EXR picture: %s",
-                   stream.reason[0] ? stream.reason : exr_get_default_error_message(r));
+                   exr_get_default_error_message(r));
 }
 
 #endif

@@ -10,7 +10,93 @@
 #include "math/scalar.h"
 
 #include <limits.h>
+#include <setjmp.h>
+#include <stddef.h>
 #include <string.h>
+
+// ---- memory for stb
+// Where memory runs out, stb asserts, frees blocks twice or takes the file for damaged. So its blocks come from the context's allocator, a list
+// holds them, and where one is refused longjmp leaves the call of stb and the list is freed.
+
+typedef struct Block {
+    _Alignas(max_align_t) struct Block* previous;
+    struct Block* next;
+    size_t size; // with this header
+} Block;
+
+typedef struct StbCall {
+    vplContext* context;
+    Block list; // its end
+    jmp_buf outOfMemory;
+} StbCall;
+
+static _Thread_local StbCall* stbCall; // of this thread
+
+static void* resizeBlock(void* memory, size_t size)
+{
+    StbCall* call = stbCall;
+    const vplContextDef* def = &call->context->def;
+    Block* old = memory != NULL ? (Block*)memory - 1 : NULL;
+    const size_t total = size + sizeof(Block);
+    Block* block = total > size ? def->alloc(def->allocUser, old, old != NULL ? old->size : 0, total) : NULL;
+    if (block == NULL) {
+        longjmp(call->outOfMemory, 1);
+    }
+    if (old == NULL) {
+        block->previous = &call->list;
+        block->next = call->list.next;
+    }
+    block->size = total;
+    block->previous->next = block->next->previous = block;
+    return block + 1;
+}
+
+static void* unlinkBlock(Block* block)
+{
+    block->previous->next = block->next;
+    block->next->previous = block->previous;
+    return block + 1;
+}
+
+static void freeBlock(vplContext* context, void* memory)
+{
+    if (memory != NULL) {
+        Block* block = (Block*)memory - 1;
+        context->def.alloc(context->def.allocUser, block, block->size, 0);
+    }
+}
+
+static void freeStb(void* memory)
+{
+    if (memory != NULL) {
+        freeBlock(stbCall->context, unlinkBlock((Block*)memory - 1));
+    }
+}
+
+// Runs work(data), which calls stb. It must free the blocks of stb that it does not unlink.
+static vplResult callStb(vplContext* context, void (*work)(void*), void* data, const char* doing)
+{
+    StbCall call = {.context = context};
+    call.list.previous = call.list.next = &call.list;
+    stbCall = &call;
+    if (setjmp(call.outOfMemory) == 0) {
+        work(data);
+        stbCall = NULL;
+        return VPL_SUCCESS;
+    }
+    while (call.list.next != &call.list) {
+        freeBlock(context, unlinkBlock(call.list.next));
+    }
+    stbCall = NULL;
+    return vplFail(context, VPL_OUT_OF_MEMORY, "out of memory while %s", doing);
+}
+
+#define STBIW_MALLOC(size)          resizeBlock(NULL, size)
+#define STBIW_REALLOC(memory, size) resizeBlock(memory, size)
+#define STBIW_FREE(memory)          freeStb(memory)
+#define STBI_MALLOC(size)           resizeBlock(NULL, size)
+#define STBI_REALLOC(memory, size)  resizeBlock(memory, size)
+#define STBI_FREE(memory)           freeStb(memory)
 
 #pragma GCC diagnostic ignored "-Wunused-function" // most of stb's
 #ifndef __clang__
@@ -33,9 +119,30 @@
 #define STBI_MAX_DIMENSIONS VPL_MAX_IMAGE_SIZE
 #include <stb_image.h>
 
+// ---- writing
+
+typedef struct Encoding {
+    const vplImage* image;
+    const uint8_t* codes; // of a PNG
+    vplByteBuffer* buffer;
+} Encoding;
+
 static void append(void* buffer, void* bytes, int size)
 {
     vplByteBuffer_Append(buffer, bytes, (size_t)size);
+}
+
+static void encodePng(void* data)
+{
+    const Encoding* e = data;
+    const int width = e->image->width;
+    stbi_write_png_to_func(append, e->buffer, width, e->image->height, 3, e->codes, 3 * width);
+}
+
+static void encodeHdr(void* data)
+{
+    const Encoding* e = data;
+    stbi_write_hdr_to_func(append, e->buffer, e->image->width, e->image->height, 3, e->image->pixels);
 }
 
 vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
@@ -46,62 +153,79 @@ vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vp
     }
     uint8_t* codes;
     TRY(vplMakeCodes(image, options, &codes));
-    const int written =
-        stbi_write_png_to_func(append, buffer, image->width, image->height, 3, codes, 3 * image->width);
+    const vplResult result =
+        callStb(image->context, encodePng, &(Encoding){image, codes, buffer}, "encoding a PNG");
     vplFree(image->context, codes);
-    return written ? VPL_SUCCESS
-                   : vplFail(image->context, VPL_OUT_OF_MEMORY, "out of memory while encoding a PNG");
+    return result;
 }
 
 vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
 {
     (void)options;
-    if (!stbi_write_hdr_to_func(append, buffer, image->width, image->height, 3, image->pixels)) {
-        return vplFail(image->context, VPL_OUT_OF_MEMORY, "out of memory while encoding an HDR picture");
+    return callStb(image->context, encodeHdr, &(Encoding){image, NULL, buffer}, "encoding an HDR picture");
+}
+
+// ---- reading
+
+typedef struct Decoding {
+    const uint8_t* bytes;
+    int size, channels; // wanted; 0: those of the file
+    vplTexels* texels;
+} Decoding;
+
+static void decode(void* data)
+{
+    const Decoding* d = data;
+    vplTexels* t = d->texels;
+    int found = 0;
+    t->codes = stbi_load_from_memory(d->bytes, d->size, &t->width, &t->height, &found, d->channels);
+    t->channels = d->channels != 0 ? d->channels : found;
+    if (t->codes != NULL) {
+        unlinkBlock((Block*)t->codes - 1); // stays when the call has ended
+        return;
+    }
+    const char* reason = stbi_failure_reason();
+    t->reason = reason != NULL && *reason != 0 ? reason : t->reason;
+}
+
+// Decodes codes with `channels` channels, or with those of the file if that is 0.
+static vplResult decodeCodes(vplContext* context, const uint8_t* bytes, size_t size, int channels,
+                             vplTexels* out)
+{
+    // A BMP's height is negative where rows go down; stb takes its absolute value, which -2^31 has not.
+    static const uint8_t least[4] = {0, 0, 0, 0x80};
+    *out = (vplTexels){.context = context, .reason = "its data is damaged"};
+    if (size >= 26 && memcmp(bytes, "BM", 2) == 0 && bytes[14] != 12 && memcmp(bytes + 22, least, 4) == 0) {
+        out->reason = "its height is -2147483648";
+        return VPL_SUCCESS;
+    }
+    return size > INT_MAX
+               ? VPL_SUCCESS
+               : callStb(context, decode, &(Decoding){bytes, (int)size, channels, out}, "reading a picture");
+}
+
+vplResult vplTexels_Decode(vplContext* context, const uint8_t* bytes, size_t size, vplTexels* texelsOut)
+{
+    TRY(decodeCodes(context, bytes, size, 0, texelsOut));
+    if (texelsOut->codes != NULL &&
+        (texelsOut->width < 1 || texelsOut->height < 1)) { // stb reads TGA files of no pixels
+        vplTexels_Free(texelsOut);
+        texelsOut->reason = "it has no pixels";
     }
     return VPL_SUCCESS;
 }
 
-// Decodes codes with `channels` channels, or with those of the file if that is 0.
-static vplTexels decodeCodes(const uint8_t* bytes, size_t size, int channels)
-{
-    // A BMP's height is negative where rows go down; stb takes its absolute value, which -2^31 has not.
-    static const uint8_t least[4] = {0, 0, 0, 0x80};
-    vplTexels t = {.reason = "its data is damaged"};
-    if (size >= 26 && memcmp(bytes, "BM", 2) == 0 && bytes[14] != 12 && memcmp(bytes + 22, least, 4) == 0) {
-        t.reason = "its height is -2147483648";
-        return t;
-    }
-    int found = 0;
-    if (size <= INT_MAX) {
-        t.codes = stbi_load_from_memory(bytes, (int)size, &t.width, &t.height, &found, channels);
-    }
-    t.channels = channels != 0 ? channels : found;
-    const char* reason = t.codes == NULL ? stbi_failure_reason() : NULL;
-    t.reason = reason != NULL && *reason != 0 ? reason : t.reason;
-    return t;
-}
-
-vplTexels vplTexels_Decode(const uint8_t* bytes, size_t size)
-{
-    vplTexels t = decodeCodes(bytes, size, 0);
-    if (t.codes != NULL && (t.width < 1 || t.height < 1)) { // stb reads TGA files of no pixels
-        vplTexels_Free(&t);
-        t.reason = "it has no pixels";
-    }
-    return t;
-}
-
 void vplTexels_Free(vplTexels* texels)
 {
-    stbi_image_free(texels->codes);
+    freeBlock(texels->context, texels->codes);
     texels->codes = NULL;
 }
 
 vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
                        vplImage** imageOut)
 {
-    vplTexels t = decodeCodes(bytes, size, 3);
+    vplTexels t;
+    TRY(decodeCodes(context, bytes, size, 3, &t));
     if (t.codes == NULL) {
         return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read the picture: %s", path, t.reason);
     }

@@ -6,13 +6,15 @@
 #include "base/context.h"
 
 typedef struct vplTexels {
+    vplContext* context;
     int width, height, channels;
     uint8_t* codes;     // NULL: the picture cannot be read
     const char* reason; // why not
 } vplTexels;
 
-// Decodes PNG, JPEG, BMP or TGA. The size is checked before anything is decoded. vplTexels_Free frees what it gives.
-vplTexels vplTexels_Decode(const uint8_t* bytes, size_t size);
+// Decodes PNG, JPEG, BMP or TGA. The size is checked before anything is decoded. vplTexels_Free frees what it gives. A picture that
+// cannot be read is no failure: only memory that runs out is.
+vplResult vplTexels_Decode(vplContext* context, const uint8_t* bytes, size_t size, vplTexels* texelsOut);
 void vplTexels_Free(vplTexels* texels);
 
 #endif

@@ -126,10 +126,10 @@ static int explain(Ranks* r, const vplScene* scene)
 
 static int work(Ranks* r, bool bakes)
 {
-    vplContext* context = openContext(r->arguments);
+    vplContext* context;
     vplScene* scene = NULL;
+    int code = largestNumber(r, exitCode(openContext(r->arguments, &context), true));
     r->context = context;
-    int code = largestNumber(r, context != NULL ? EXIT_DONE : EXIT_COULD_NOT);
     code = code == EXIT_DONE ? shareScene(r, context, &scene) : code;
     if (code == EXIT_DONE && (r->arguments->explain || r->arguments->dryRun)) {
         code = explain(r, scene);
@@ -195,6 +195,7 @@ int main(int count, char** words)
     int level;
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN); // a file that must not grow fails in write, and is reported
+    guardJson();
     MPI_Init_thread(&count, &words, MPI_THREAD_FUNNELED, &level);
     MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks.count);

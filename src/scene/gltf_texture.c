@@ -68,13 +68,16 @@ static vplResult findImage(vplGltf* g, const vplJson* object, const char* key, i
 
 // The mean of a picture: its colours as linear light, or the codes of a map of numbers. *meanOut stays 1 for a picture
 // that cannot be read.
-static void findMean(const Picture* p, bool colours, double meanOut[3])
+static vplResult findMean(vplContext* context, const Picture* p, bool colours, double meanOut[3])
 {
     double valueOf[256], sum[3] = {0, 0, 0};
     meanOut[0] = meanOut[1] = meanOut[2] = 1;
-    vplTexels t = p->bytes != NULL ? vplTexels_Decode(p->bytes, p->size) : (vplTexels){0};
+    vplTexels t = {0};
+    if (p->bytes != NULL) {
+        TRY(vplTexels_Decode(context, p->bytes, p->size, &t));
+    }
     if (t.codes == NULL) {
-        return;
+        return VPL_SUCCESS;
     }
     for (int code = 0; code < 256; code++) {
         valueOf[code] = colours ? (double)vplSrgb_Decode((float)code / 255.0f) : code / 255.0;
@@ -90,6 +93,7 @@ static void findMean(const Picture* p, bool colours, double meanOut[3])
         meanOut[k] = sum[k] / (double)count;
     }
     vplTexels_Free(&t);
+    return VPL_SUCCESS;
 }
 
 vplResult vplGltf_ReadMean(vplGltf* g, const vplJson* object, const char* key, bool colours,
@@ -110,9 +114,10 @@ vplResult vplGltf_ReadMean(vplGltf* g, const vplJson* object, const char* key, b
             TRY(vplReadFile(g->context, p.label, &read, &p.size));
             p.bytes = (const uint8_t*)read;
         }
-        findMean(&p, colours, known->mean);
-        known->known = true;
+        const vplResult result = findMean(g->context, &p, colours, known->mean);
         vplFree(g->context, read);
+        TRY(result);
+        known->known = true;
     }
     memcpy(meanOut, known->mean, sizeof known->mean);
     return VPL_SUCCESS;

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/file_kind.h"
 
+#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -39,11 +40,13 @@ static vplResult parse(vplJsonFile* file)
     json_error_t error;
     // Reads integers as reals, so that those beyond 64 bits are no error.
     const size_t flags = JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL;
+    errno = 0;
     file->root = json_loadb(file->text, file->size, flags, &error);
     if (file->root != NULL) {
         return VPL_SUCCESS;
     }
-    if (error.text[0] == 0 || json_error_code(&error) == json_error_out_of_memory) {
+    // jansson takes most strings that it has no memory for as syntax errors, but malloc leaves its own number.
+    if (errno == ENOMEM || json_error_code(&error) == json_error_out_of_memory) {
         return vplFail(file->context, VPL_OUT_OF_MEMORY, "%s: out of memory while reading JSON", file->name);
     }
     return vplFail(file->context, VPL_PARSE_ERROR, "%s:%d:%d: %s", file->name,

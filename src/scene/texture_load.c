@@ -81,7 +81,8 @@ static vplResult addPicture(vplScene* scene, const vplTextureFile* file, const u
     if (endsWith(file->path, ".hdr") || endsWith(file->path, ".pfm") || endsWith(file->path, ".exr")) {
         return addLinear(scene, file, def, bytes, size, indexOut);
     }
-    vplTexels texels = vplTexels_Decode(bytes, size);
+    vplTexels texels;
+    TRY(vplTexels_Decode(scene->context, bytes, size, &texels));
     if (texels.codes == NULL) {
         return addGrey(scene, file, def, texels.reason, indexOut);
     }

@@ -23,7 +23,7 @@ passed=0
 failed=0
 
 . "$folder/support.sh"
-for part in ${*:-usage completion scenes files numbers plan pictures sky frames goals save parts radiosity tradeoff browser bench speeds}; do
+for part in ${*:-usage completion scenes files numbers plan pictures sky frames goals save memory parts radiosity tradeoff browser bench speeds}; do
     . "$folder/$part.sh"
 done
 

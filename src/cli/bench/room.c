@@ -185,10 +185,7 @@ vplResult openBench(const Arguments* a, int threads, int width, int height, Benc
     Arguments copy = *a;
     copy.context.workerCount = threads;
     memset(b, 0, sizeof *b);
-    b->context = openContext(&copy);
-    if (b->context == NULL) {
-        return VPL_INVALID_ARGUMENT;
-    }
+    TRY(openContext(&copy, &b->context));
     TRY(buildRoom(b->context, &b->scene));
     TRY(vplGeometry_Create(b->scene, &b->geometry));
     TRY(vplImage_Create(b->context, width, height, &b->image));

@@ -222,9 +222,13 @@ int runTradeoffWith(const Arguments* a, const Crew* crew)
     // One thread unless told otherwise: waiting threads use processor time, too, the more the busier the
     // machine is.
     int workers = a->threadsCount > 0 ? a->context.workerCount : 1;
-    bool open = openContextFor(t, workers, &t->context) == VPL_SUCCESS &&
-                openContextFor(t, a->context.workerCount, &t->tracing) == VPL_SUCCESS;
-    int code = open ? run(t) : EXIT_USAGE;
+    int code = exitCode(openContextFor(t, workers, &t->context), true);
+    if (code == EXIT_DONE) {
+        code = exitCode(openContextFor(t, a->context.workerCount, &t->tracing), true);
+    }
+    if (code == EXIT_DONE) {
+        code = run(t);
+    }
     destroy(t);
     return code;
 }
