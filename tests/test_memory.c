@@ -5,6 +5,7 @@
 
 #include "render/stages/show.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <stdlib.h>
 
@@ -502,7 +503,11 @@ static long jsonAllocations, jsonFailAt;
 
 static void* failingJsonAlloc(size_t size)
 {
-    return jsonAllocations++ == jsonFailAt ? NULL : malloc(size);
+    if (jsonAllocations++ == jsonFailAt) {
+        errno = ENOMEM; // as malloc sets it
+        return NULL;
+    }
+    return malloc(size);
 }
 
 // Variants: a scene, a glTF file with a buffer beside it, a plan.
@@ -523,7 +528,7 @@ static vplResult readByJansson(vplContext* context, int variant)
     return result;
 }
 
-// If jansson runs out of memory for a key, it reports a syntax error as if the key were missing.
+// jansson itself reports a syntax error if it runs out of memory for a key, as if the key were missing.
 static void failJansson(int variant)
 {
     vplResult result = VPL_OUT_OF_MEMORY;
@@ -534,7 +539,7 @@ static void failJansson(int variant)
         jsonAllocations = 0;
         result = readByJansson(context, variant);
         vplContext_Destroy(context);
-        bool told = (result == VPL_OUT_OF_MEMORY || result == VPL_PARSE_ERROR) && failing.errors == 1;
+        bool told = result == VPL_OUT_OF_MEMORY && failing.errors == 1;
         if (failing.held != 0 || (result != VPL_SUCCESS && !told)) {
             json_set_alloc_funcs(malloc, free);
             fail_msg("variant %d, allocation %ld of jansson: %s, %d sentences, %ld blocks leaked", variant,

@@ -42,12 +42,13 @@ static vplResult parse(vplJsonFile* file)
     const size_t flags = JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL;
     errno = 0;
     file->root = json_loadb(file->text, file->size, flags, &error);
+    // jansson calls a string that it has no memory for a syntax error, or silently leaves out its end. malloc's errno tells.
+    if (errno == ENOMEM || (file->root == NULL && error.text[0] == 0)) {
+        json_decref(file->root);
+        return vplFail(file->context, VPL_OUT_OF_MEMORY, "%s: out of memory while reading JSON", file->name);
+    }
     if (file->root != NULL) {
         return VPL_SUCCESS;
-    }
-    // jansson takes most strings that it has no memory for as syntax errors, but malloc leaves its own number.
-    if (errno == ENOMEM || json_error_code(&error) == json_error_out_of_memory) {
-        return vplFail(file->context, VPL_OUT_OF_MEMORY, "%s: out of memory while reading JSON", file->name);
     }
     return vplFail(file->context, VPL_PARSE_ERROR, "%s:%d:%d: %s", file->name,
                    error.line > 0 ? error.line : 1, error.column > 0 ? error.column : 1, error.text);
