@@ -116,7 +116,8 @@ typedef struct vplContextDef {
 vplContextDef vplDefaultContextDef(void);
 
 // Owns memory, messages and threads. Other objects are created from a context and must be destroyed before
-// it. Only one thread at a time may use a context; contexts are independent of each other.
+// it. Only one thread at a time may use a context; contexts are independent of each other. A thread that calls the library
+// needs a stack of 256 KiB, and so do those of parallelFor.
 typedef struct vplContext vplContext;
 
 // Creates a context. `def` NULL means all defaults. VPL_INVALID_ARGUMENT for a def out of range,

@@ -72,6 +72,12 @@ if [ -e "$no_memory" ]; then
     without_memory PlanWithoutMemory render "$room" $tiny $few --dry-run --plan-out "$out/plan"
     without_memory BakeWithoutMemory bake "$room" --threads 1 --quiet --patches 60 -o "$out/o.ply"
     without_memory LightsWithoutMemory lights "$room" --threads 1 --particles 4
+    # What include/vpl/base.h says of the stack; threads of OpenMP get as much.
+    for method in auto keller ssvp radiosity path; do
+        succeeds "StackOf256KiBIsEnough_$method" sh -c 'ulimit -s 256; exec "$@"' sh \
+            "$vpl" render "$textured" --size 64x48 --quiet --method $method -o "$out/o.pfm"
+    done
+    rm -f "$out"/*
 else
     echo "skipped: no allocation of the program can be made to fail in this build"
 fi
