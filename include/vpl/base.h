@@ -4,7 +4,8 @@
 // In all headers a pointer must not be NULL unless its function or field says that it may be; progress, user and data always
 // may. Functions with a vplResult check their own arguments: NULL is VPL_INVALID_ARGUMENT, and the message names it. Others
 // return 0, false, NULL or a struct of zeros for it, except those that loops call, whose comments say that pointers must not
-// be NULL. tests/nulls calls every function with every wrong argument.
+// be NULL. tests/nulls calls every function with every wrong argument. Numbers in texts and files have decimal points, whatever
+// locale the program has set.
 #ifndef VPL_BASE_H
 #define VPL_BASE_H
 

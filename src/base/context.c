@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "base/arena.h"
 #include "base/isa.h"
+#include "base/numbers.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -236,12 +237,12 @@ static void logArguments(const vplContext* context, vplLogLevel level, const cha
     char start[1024];
     va_list again;
     va_copy(again, arguments);
-    const int length = vsnprintf(start, sizeof start, format, arguments);
+    const int length = vplFormatList(start, sizeof start, format, arguments);
     const size_t size = length < 0 ? 0 : (size_t)length + 1;
     // The reason stands behind names, which may be long. Without memory the message is cut off.
     char* all = size > sizeof start ? context->def.alloc(context->def.allocUser, NULL, 0, size) : NULL;
     if (all != NULL) {
-        vsnprintf(all, size, format, again);
+        vplFormatList(all, size, format, again);
     }
     va_end(again);
     char* message = all != NULL ? all : start;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "image/draw.h"
+#include "base/numbers.h"
 #include "math/scalar.h"
 
 #include <math.h>
@@ -94,7 +95,7 @@ void vplColourBar_Draw(vplImage* image, int top, float largest, vplColourFcn* co
     for (int i = 0; i < labels; i++) {
         char text[32];
         double value = (double)largest * i / (labels - 1);
-        snprintf(text, sizeof text, value != 0 && (value < 0.001 || value >= 1e5) ? "%.1e" : "%.4g", value);
+        vplFormat(text, sizeof text, value != 0 && (value < 0.001 || value >= 1e5) ? "%.1e" : "%.4g", value);
         int wide = 6 * (int)strlen(text) - 1;
         int x = (image->width - 1) * i / (labels - 1) - wide * i / (labels - 1);
         drawText(image, x, top + 17, (vplRgb){1, 1, 1}, text);

@@ -2,6 +2,7 @@
 // Portable float map: "PF" (RGB) or "Pf" (grey), size, scale (its sign is the byte order), rows bottom-up.
 #include "base/arena.h"
 #include "base/bytes.h"
+#include "base/numbers.h"
 #include "image/image_file.h"
 
 #include <math.h>
@@ -59,7 +60,7 @@ static bool readHeader(const uint8_t* bytes, size_t size, Header* header)
     char* at = text + 2;
     long width = strtol(at, &at, 10);
     long height = strtol(at, &at, 10);
-    double scale = strtod(at, &at);
+    double scale = vplParseDouble(at, &at);
     if (*at == '\r') {
         at++;
     }

@@ -3,6 +3,7 @@
 // come later (decisions_geometry.c).
 #include "render/plan.h"
 
+#include "base/numbers.h"
 #include "geometry/cut_outs.h"
 #include "render/options.h"
 #include "render/show.h"
@@ -19,7 +20,7 @@ void vplDecide(vplPlan* plan, const char* option, const char* format, ...)
         d->name = option;
         vplRenderOptions_Get(&plan->options, option, d->value, sizeof d->value);
         va_start(arguments, format);
-        vsnprintf(d->why, sizeof d->why, format, arguments);
+        vplFormatList(d->why, sizeof d->why, format, arguments);
         va_end(arguments);
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Options as text: vplRenderOptions_Set and its inverse.
 #include "base/arena.h"
+#include "base/numbers.h"
 #include "render/options.h"
 #include "render/planner/planner.h"
 
@@ -24,7 +25,7 @@ __attribute__((format(printf, 2, 3))) static vplResult refuse(const Setting* s, 
     const int length = snprintf(problem, size, "%s is \"%.60s\", must be ", s->option->name, s->value);
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(problem + length, size - (size_t)length, format, arguments);
+    vplFormatList(problem + length, size - (size_t)length, format, arguments);
     va_end(arguments);
     return VPL_INVALID_ARGUMENT;
 }
@@ -80,7 +81,7 @@ static vplResult setReal(const Setting* s)
     const bool below = o->kind == VPL_OPTION_BELOW_AUTO, bias = o->kind == VPL_OPTION_BIAS;
     const bool automatic = below || bias || o->kind == VPL_OPTION_FLOAT_AUTO;
     char* end;
-    double number = strtod(s->value, &end);
+    double number = vplParseDouble(s->value, &end);
     if (automatic && strcmp(s->value, "auto") == 0) {
         number = -1;
     } else if (below && strcmp(s->value, "usual") == 0) {
@@ -260,8 +261,8 @@ vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, cons
 static void writeNumber(double value, bool single, char text[32])
 {
     for (int digits = 6; digits <= 17; digits++) {
-        snprintf(text, 32, "%.*g", digits, value);
-        if (single ? strtof(text, NULL) == (float)value : strtod(text, NULL) == value) {
+        vplFormat(text, 32, "%.*g", digits, value);
+        if (single ? vplParseFloat(text, NULL) == (float)value : vplParseDouble(text, NULL) == value) {
             return;
         }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A plan as text.
 #include "render/plan.h"
+#include "base/numbers.h"
 #include "render/stages/make.h"
 
 #include <math.h>
@@ -18,7 +19,7 @@ __attribute__((format(printf, 2, 3))) static void put(Text* t, const char* forma
     va_list arguments;
     va_start(arguments, format);
     const int length =
-        vsnprintf(room ? t->at + t->length : NULL, room ? t->size - t->length : 0, format, arguments);
+        vplFormatList(room ? t->at + t->length : NULL, room ? t->size - t->length : 0, format, arguments);
     va_end(arguments);
     t->length += length > 0 ? (size_t)length : 0;
 }

@@ -2,6 +2,7 @@
 // Plans that cannot be rendered, and the sentence for each: options that contradict each other, too little time, too little memory.
 #include "render/plan.h"
 
+#include "base/numbers.h"
 #include "geometry/bvh.h"
 #include "render/options.h"
 #include "render/show.h"
@@ -91,14 +92,14 @@ void vplRefuseOptions(vplPlan* p)
                               : refuseLighting(p);
     problem = problem != NULL ? problem : refuseOptions(p);
     if (problem != NULL) {
-        snprintf(p->problem, sizeof p->problem, "%s", problem);
+        vplFormat(p->problem, sizeof p->problem, "%s", problem);
         return;
     }
     for (int i = 0; i < p->emitterCount && p->shading == VPL_LIGHTING_DOCUMENTED && p->showsDirect; i++) {
         if (p->emitters[i].type != VPL_EMITTER_POINT) {
-            snprintf(p->problem, sizeof p->problem,
-                     "light %d is not a point light, and documented lighting knows no others; use physical",
-                     i);
+            vplFormat(p->problem, sizeof p->problem,
+                      "light %d is not a point light, and documented lighting knows no others; use physical",
+                      i);
             return;
         }
     }
@@ -132,7 +133,7 @@ void vplRefuseTime(const vplRunner* r, vplPlan* p)
                       : maps          ? leastMsOfMaps(p, triangles)
                                       : 0;
     if (p->options.stop.budgetMs > 0 && ms > p->options.stop.budgetMs) {
-        snprintf(
+        vplFormat(
             p->problem, sizeof p->problem,
             "--budget %g: %s all %d triangles, which takes about %.2g s at least; use %sanother method or "
             "more time",
@@ -153,9 +154,9 @@ void vplRefuseMemory(const vplContext* context, vplPlan* p)
         most = p->stages[i].bytes + p->stages[i].scratch > most->bytes + most->scratch ? &p->stages[i] : most;
     }
     p->refusal = VPL_OUT_OF_MEMORY;
-    snprintf(p->problem, sizeof p->problem,
-             "the picture needs about %.0f MiB of memory, and %.0f MiB are allowed; %.0f MiB of them are "
-             "for: %s (%.80s)",
-             mib * (double)p->peakBytes, mib * (double)context->memoryLimit,
-             mib * (double)(most->bytes + most->scratch), most->name, most->why);
+    vplFormat(p->problem, sizeof p->problem,
+              "the picture needs about %.0f MiB of memory, and %.0f MiB are allowed; %.0f MiB of them are "
+              "for: %s (%.80s)",
+              mib * (double)p->peakBytes, mib * (double)context->memoryLimit,
+              mib * (double)(most->bytes + most->scratch), most->name, most->why);
 }

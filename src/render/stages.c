@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The table of stages, and when a picture needs each.
 #include "reference/light_path.h"
+#include "base/numbers.h"
 #include "render/options.h"
 #include "render/plan.h"
 #include "render/show.h"
@@ -22,7 +23,7 @@ __attribute__((format(printf, 3, 4))) static bool because(char* why, bool needed
 {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(why, VPL_PLAN_TEXT, format, arguments);
+    vplFormatList(why, VPL_PLAN_TEXT, format, arguments);
     va_end(arguments);
     return needed;
 }

@@ -3,6 +3,7 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/file_kind.h"
+#include "base/numbers.h"
 
 #include <errno.h>
 #include <float.h>
@@ -127,7 +128,7 @@ vplResult vplJson_Fail(const vplJson* at, const char* format, ...)
     char message[512];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    vplFormatList(message, sizeof message, format, arguments);
     va_end(arguments);
     return failAt(at, false, message);
 }

@@ -2,6 +2,7 @@
 // Cameras and emitters that move, by linear interpolation between keyframes. The formula a + t (b - a)
 // reproduces the keys, and values that both keys share, exactly.
 #include "math/vec.h"
+#include "base/numbers.h"
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -99,7 +100,7 @@ vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vp
         def.up = lerpVec(i.t, a->up, b->up);
         def.fovY = a->fovY + i.t * (b->fovY - a->fovY);
         char subject[64];
-        snprintf(subject, sizeof subject, "camera %d at frame %g: ", index, frame);
+        vplFormat(subject, sizeof subject, "camera %d at frame %g: ", index, frame);
         TRY(vplScene_ReportFault(scene, subject, vplCheckCamera(&def)));
     }
     *defOut = def;
@@ -120,7 +121,7 @@ vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, v
         def.direction = lerpVec(i.t, a->direction, b->direction);
         def.intensity = lerpRgb(i.t, a->intensity, b->intensity);
         char subject[64];
-        snprintf(subject, sizeof subject, "light %d at frame %g: ", index, frame);
+        vplFormat(subject, sizeof subject, "light %d at frame %g: ", index, frame);
         TRY(vplScene_ReportFault(scene, subject, vplCheckEmitter(&def)));
     }
     *defOut = def;
@@ -178,7 +179,7 @@ static vplResult checkKeys(const vplScene* scene, const vplKeys* k, const void* 
     double before = -INFINITY;
     for (int i = 0; i < k->count; i++) {
         char subject[64];
-        snprintf(subject, sizeof subject, "%s %d: ", k->type, i);
+        vplFormat(subject, sizeof subject, "%s %d: ", k->type, i);
         const double frame = frameOf(k->keys, k->size, i);
         TRY(vplScene_ReportFault(scene, subject, vplCheckKeyFrame(before, frame)));
         TRY(vplScene_ReportFault(scene, subject, k->check(def, (const char*)k->keys + (size_t)i * k->size)));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Reads decimal numbers: computes in double, and calls strtof only where the error of double could change the
+// Reads decimal numbers: computes in double, and calls vplParseFloat only where the error of double could change the
 // float. A float has 29 bits less than a double, so this concerns one number in 60 million.
 #include "scene/obj_number.h"
+#include "base/numbers.h"
 
-#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,18 +17,6 @@ typedef struct Decimal {
 static bool isDigit(char c)
 {
     return c >= '0' && c <= '9';
-}
-
-// The nearest float to the digits at `text`. strtof reads them in the C locale, where the decimal point is a
-// point. uselocale changes the locale of this thread only.
-static float readExactly(const char* text)
-{
-    const locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    const locale_t before = uselocale(plain);
-    const float value = strtof(text, NULL);
-    uselocale(before);
-    freelocale(plain);
-    return value;
 }
 
 // leading * 10^exponent within 4 units in the last place of a double.
@@ -65,7 +53,7 @@ static float nearestFloat(const Decimal* d, const char* text)
     memcpy(&bits, &value, sizeof bits);
     int64_t overHalf = (int64_t)(bits & 0x1FFFFFFF) - 0x10000000;
     bool clear = (overHalf > 16 || overHalf < -16) && value >= 0x1p-126 && value < 0x1p128;
-    return clear ? (float)value : readExactly(text);
+    return clear ? (float)value : vplParseFloat(text, NULL);
 }
 
 // Reads digits around an optional point; false if there is no digit.

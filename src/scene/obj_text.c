@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/file_kind.h"
+#include "base/numbers.h"
 #include "scene/obj_number.h"
 
 #include <math.h>
@@ -125,7 +126,7 @@ static void logAt(const vplText* text, const char* at, vplLogLevel level, const 
 {
     char message[512];
     long long line, column;
-    vsnprintf(message, sizeof message, format, arguments);
+    vplFormatList(message, sizeof message, format, arguments);
     locate(text, at, &line, &column);
     vplLog(text->context, level, "%s:%lld:%lld: %s", text->file, line, column, message);
 }
@@ -165,7 +166,7 @@ vplResult vplText_FailWord(const vplText* text, vplWord word, const char* format
     char expected[256];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(expected, sizeof expected, format, arguments);
+    vplFormatList(expected, sizeof expected, format, arguments);
     va_end(arguments);
     if (word.start == word.end) {
         return vplText_FailAt(text, word.start, "found the end of the line, expected %s", expected);

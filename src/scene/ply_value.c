@@ -2,6 +2,7 @@
 // Values behind the header of a PLY file: words of a text, or bytes in either order.
 #include "scene/ply.h"
 
+#include "base/numbers.h"
 #include "scene/obj_number.h"
 
 #include <math.h>
@@ -33,7 +34,7 @@ vplResult vplPly_Fail(const vplPly* ply, const char* at, const char* format, ...
     char message[512];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    vplFormatList(message, sizeof message, format, arguments);
     va_end(arguments);
     logAt(ply, at, VPL_LOG_ERROR, message);
     return VPL_PARSE_ERROR;

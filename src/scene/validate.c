@@ -2,6 +2,7 @@
 // One check per number. The API puts "vplCameraDef." before the sentence, the file reader "scene.json:3:14:
 // camera.".
 #include "scene/scene.h"
+#include "base/numbers.h"
 #include "math/matrix.h"
 #include "math/scalar.h"
 #include "math/vec.h"
@@ -20,7 +21,7 @@ static vplFault fault(const char* field, int index, const char* format, ...)
     vplFault f = {field, index, ""};
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(f.text, sizeof f.text, format, arguments);
+    vplFormatList(f.text, sizeof f.text, format, arguments);
     va_end(arguments);
     return f;
 }

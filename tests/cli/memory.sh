@@ -42,6 +42,7 @@ without_memory() {
         not_ok "$name" "only $failures allocations failed"
     else
         ok "$name"
+        echo "# $failures failed allocations"
     fi
 }
 

@@ -2,6 +2,7 @@
 // Solves B = E + rho F B: sweeps until the solution converges or is found to diverge.
 #include "radiosity/solve/solve.h"
 
+#include "base/numbers.h"
 #include "radiosity/sides/side.h"
 
 #include <math.h>
@@ -76,7 +77,7 @@ enum { NUMBER = 40 };
 static const char* sayNumber(char out[NUMBER], double value, const char* unit)
 {
     if (isfinite(value)) {
-        snprintf(out, NUMBER, "%.4g%s", value, unit);
+        vplFormat(out, NUMBER, "%.4g%s", value, unit);
         return out;
     }
     return "beyond the range of float";
@@ -122,7 +123,7 @@ static void warnOfMissingLight(const vplSolve* s, bool done, double shrink)
     }
     char share[32] = "light without end";
     if (missing < 100) {
-        snprintf(share, sizeof share, "another %.2g %% of light", 100 * missing);
+        vplFormat(share, sizeof share, "another %.2g %% of light", 100 * missing);
     }
     if (done) {
         vplLog(context, VPL_LOG_WARNING,

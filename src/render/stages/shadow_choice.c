@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render/stages/shadow_choice.h"
 
+#include "base/numbers.h"
 #include "math/vec.h"
 #include "render/options.h"
 #include "render/stages/results.h"
@@ -101,9 +102,10 @@ vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights*
     const bool map = costs.mapMs < costs.rayMs;
     plan->shadowMapEstimateMs = costs.mapMs;
     plan->shadowRayEstimateMs = costs.rayMs;
-    snprintf(why, VPL_PLAN_TEXT,
-             "%d lights, %.0f pixels of which %.0f %% face a light, %.0f triangles above it; maps would take "
-             "about %.3g ms of one core, rays %.3g ms",
-             lights->count, pixels, 100 * load.facing, load.trianglesAbove, costs.mapMs, costs.rayMs);
+    vplFormat(
+        why, VPL_PLAN_TEXT,
+        "%d lights, %.0f pixels of which %.0f %% face a light, %.0f triangles above it; maps would take "
+        "about %.3g ms of one core, rays %.3g ms",
+        lights->count, pixels, 100 * load.facing, load.trianglesAbove, costs.mapMs, costs.rayMs);
     return map ? VPL_LIGHT_SHADOWS_MAP : VPL_LIGHT_SHADOWS_RAY;
 }
