@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Programs with windows call setlocale(LC_ALL, ""), and in half of the world decimal points are commas then. Files, options and pictures
-// must not notice.
+// What programs change for their whole process or thread: setlocale(LC_ALL, "") makes decimal points commas in half of the world, and the
+// floating-point environment may flush denormals, round up or trap. Files, options and pictures must not notice.
 #include "scenes.h"
 
 #include <locale.h>
@@ -139,3 +139,73 @@ TEST(DecimalCommasChangeNothing, 2)
     assert_true(comma.scene == plain.scene && comma.obj == plain.obj);
     assert_true(comma.picture == plain.picture && comma.heatmap == plain.heatmap);
 }
+
+// ---- the floating-point environment
+
+#ifdef __SSE__
+#include <xmmintrin.h>
+
+enum {
+    FLUSHES = 0x1F80 | 0x8040, // denormals are zero, in and out
+    ROUNDS_UP = 0x1F80 | 0x4000,
+    TRAPS = 0x1000, // nothing but inexact results is masked
+};
+
+static unsigned strange; // MXCSR of the program
+
+// A scheduler whose threads have the environment of the program, in any order of tasks.
+static void runStrangely(void* user, int count, int workers, vplTaskFcn* task, void* data)
+{
+    (void)user;
+    const unsigned before = _mm_getcsr();
+    for (int i = count - 1; i >= 0; i--) {
+        _mm_setcsr(strange);
+        task(data, i, i % workers);
+    }
+    _mm_setcsr(before);
+}
+
+// The hash of a picture of light so faint that denormals matter.
+static uint64_t renderStrangely(const char* words, unsigned control)
+{
+    vplContextDef def = vplDefaultContextDef();
+    vplContext* context = NULL;
+    vplScene* scene = NULL;
+    vplImage* image = NULL;
+    vplRenderOptions o = plainOptions();
+    o.output.width = 16;
+    o.output.height = 12;
+    o.shadow.mapSize = 16;
+    def.parallelFor = runStrangely;
+    def.workerCount = 3;
+    assert_int_equal(vplRenderOptions_SetAll(&o, words), VPL_SUCCESS);
+    strange = control;
+    _mm_setcsr(control);
+    vplResult result = vplContext_Create(&def, &context);
+    result = result == VPL_SUCCESS ? vplScene_Load(context, "tests/data/faint.json", &scene) : result;
+    result = result == VPL_SUCCESS ? vplRender(scene, &o, &image, NULL) : result;
+    const unsigned after = _mm_getcsr();
+    _mm_setcsr(0x1F80);
+    assert_int_equal(result, VPL_SUCCESS);
+    assert_true((after & ~0x3Fu) == control);
+    const uint64_t hash = vplImage_Hash(image);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    vplContext_Destroy(context);
+    return hash;
+}
+
+TEST_ALONE(TheFloatingPointEnvironmentChangesNoBit)
+{
+    static const char* const cases[] = {" --method keller --particles 9", " --method path --spp 4",
+                                        " --method radiosity --patches 60",
+                                        " --method ssvp --first-bounce 9 --second-bounce 9 --clusters 3",
+                                        " --preset franchi-ferrante --particles 9"};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const uint64_t plain = renderStrangely(cases[i], 0x1F80);
+        assert_true(renderStrangely(cases[i], FLUSHES) == plain);
+        assert_true(renderStrangely(cases[i], ROUNDS_UP) == plain);
+        assert_true(renderStrangely(cases[i], TRAPS) == plain);
+    }
+}
+#endif

@@ -5,7 +5,8 @@
 // may. Functions with a vplResult check their own arguments: NULL is VPL_INVALID_ARGUMENT, and the message names it. Others
 // return 0, false, NULL or a struct of zeros for it, except those that loops call, whose comments say that pointers must not
 // be NULL. tests/nulls calls every function with every wrong argument. Numbers in texts and files have decimal points, whatever
-// locale the program has set.
+// locale the program has set. Functions with a vplResult, and tasks, round to the nearest, keep denormals and mask floating-point
+// traps, whatever the program has set, and restore its environment; the other functions compute in the caller's.
 #ifndef VPL_BASE_H
 #define VPL_BASE_H
 

@@ -5,6 +5,8 @@
 
 #include <vpl/machine.h>
 
+#include "base/floats.h"
+
 #include <pthread.h>
 #include <stdatomic.h>
 
@@ -68,7 +70,7 @@ vplResult vplFail(const vplContext* context, vplResult result, const char* forma
 
 // Returns VPL_INVALID_ARGUMENT from the calling function, with a sentence that names it and the argument, if one of up to
 // six pointers is NULL.
-#define REQUIRE(context, ...)                                                                                \
+#define CHECK_POINTERS(context, ...)                                                                         \
     do {                                                                                                     \
         const void* const required[] = {__VA_ARGS__};                                                        \
         if (!vplCheckPointers((context), __func__, #__VA_ARGS__, required,                                   \
@@ -77,11 +79,16 @@ vplResult vplFail(const vplContext* context, vplResult result, const char* forma
         }                                                                                                    \
     } while (0)
 
+// The same at the beginning of a public function, which computes with PLAIN_FLOATS.
+#define REQUIRE(context, ...)                                                                                \
+    PLAIN_FLOATS;                                                                                            \
+    CHECK_POINTERS(context, __VA_ARGS__)
+
 // The same for an array, which may be NULL if it has no elements. Negative counts are left to others.
 #define REQUIRE_ARRAY(context, array, count)                                                                 \
     do {                                                                                                     \
         if ((count) > 0) {                                                                                   \
-            REQUIRE(context, array);                                                                         \
+            CHECK_POINTERS(context, array);                                                                  \
         }                                                                                                    \
     } while (0)
 

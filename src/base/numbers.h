@@ -4,8 +4,9 @@
 #ifndef VPL_BASE_NUMBERS_H
 #define VPL_BASE_NUMBERS_H
 
+#include "base/context.h"
+
 #include <stdarg.h>
-#include <stddef.h>
 
 // strtod and strtof in the C locale.
 double vplParseDouble(const char* text, char** end);
@@ -13,9 +14,6 @@ float vplParseFloat(const char* text, char** end);
 
 // vsnprintf and snprintf in the C locale.
 int vplFormatList(char* text, size_t size, const char* format, va_list arguments);
-#if defined(__GNUC__)
-__attribute__((format(printf, 3, 4)))
-#endif
-int vplFormat(char* text, size_t size, const char* format, ...);
+int vplFormat(char* text, size_t size, const char* format, ...) VPL_PRINTF(3, 4);
 
 #endif

@@ -9,8 +9,22 @@
 #include <omp.h>
 #endif
 
+typedef struct Tasks {
+    vplTaskFcn* task;
+    void* data;
+} Tasks;
+
+// Threads have a floating-point environment each.
+static void plainTask(void* data, int index, int worker)
+{
+    PLAIN_FLOATS;
+    const Tasks* t = data;
+    t->task(t->data, index, worker);
+}
+
 void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data)
 {
+    Tasks tasks = {task, data};
     int workers = context->workerCount < count ? context->workerCount : count;
 #ifndef _OPENMP
     workers = context->def.parallelFor != NULL ? workers : 1;
@@ -22,13 +36,13 @@ void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data
         return;
     }
     if (context->def.parallelFor != NULL) {
-        context->def.parallelFor(context->def.parallelForUser, count, workers, task, data);
+        context->def.parallelFor(context->def.parallelForUser, count, workers, plainTask, &tasks);
         return;
     }
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(workers)
     for (int i = 0; i < count; i++) {
-        task(data, i, omp_get_thread_num());
+        plainTask(&tasks, i, omp_get_thread_num());
     }
 #endif
 }

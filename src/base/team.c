@@ -15,7 +15,7 @@ vplResult vplContext_SetTeam(vplContext* context, const vplTeam* team)
     REQUIRE(NULL, context);
     Header* headers = NULL;
     if (team != NULL) {
-        REQUIRE(context, team->exchange);
+        CHECK_POINTERS(context, team->exchange);
         if (team->count < 1 || team->count > MOST_MEMBERS || team->index < 0 || team->index >= team->count) {
             return vplFail(context, VPL_INVALID_ARGUMENT,
                            "vplTeam has member %d of %d, must be in [0, count) of [1, %d]", team->index,

@@ -62,7 +62,7 @@ vplResult vplImage_CompareRegions(const vplImage* a, const vplImage* b, int colu
                        "regions are %dx%d, must be in [1, %d] and [1, %d]: one pixel each at least", columns,
                        rows, a->width, a->height);
     }
-    REQUIRE(a->context, regionsOut); // after the counts: without room for them callers have no array
+    CHECK_POINTERS(a->context, regionsOut); // after the counts: without room for them callers have no array
     for (int j = 0; j < rows; j++) {
         for (int i = 0; i < columns; i++) {
             vplRegion* region = &regionsOut[(size_t)j * (size_t)columns + (size_t)i];

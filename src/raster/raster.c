@@ -216,6 +216,7 @@ static vplResult runAll(vplRaster* const* rasters, int count, vplProgressFcn* pr
 vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user,
                            vplRasterStats* statsOut)
 {
+    PLAIN_FLOATS;
     REQUIRE_ARRAY(NULL, rasters, count);
     const vplResult result = runAll(rasters, count, progress, user);
     for (int i = 0; i < count; i++) {

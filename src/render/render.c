@@ -58,7 +58,7 @@ vplResult vplRenderer_Finish(vplRenderer* r, vplImage** imageOut, vplLayers** la
 {
     REQUIRE(NULL, r);
     if (layersOut == NULL) {
-        REQUIRE(r->runner.run.context, imageOut);
+        CHECK_POINTERS(r->runner.run.context, imageOut);
     }
     TRY(layersOut != NULL ? vplRenderer_GetLayers(r, layersOut, statsOut) : takeImage(r, imageOut, statsOut));
     sayError(r, r->asked.stop.maxError);
