@@ -159,7 +159,7 @@ vplResult findSpeeds(const Arguments* a, vplContext* context)
 int runCalibration(const Arguments* a)
 {
     char path[PATH_MAX];
-    vplSpeeds speeds;
+    vplSpeeds speeds = {0};
     vplContext* context;
     int code = exitCode(openContext(a, &context), true);
     if (code == EXIT_DONE) {
