@@ -101,8 +101,9 @@ VERSION        := $(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl
 # The number in the soname changes with the ABI: with the minor version while the major one is 0.
 SONAME         := libvpl.so.$(shell echo $(VERSION) | sed -e 's/^\(0\.[0-9]*\).*/\1/' -e 's/^\([1-9][0-9]*\)\..*/\1/')
 SHARED         := libvpl.so.$(VERSION)
-# Calls with wrong arguments are written by a Python program.
+# Replaces malloc, which sanitizers do themselves.
 NO_MEMORY      := $(if $(SANITIZE),,$(BUILD)/no-memory.so)
+# Calls with wrong arguments are written by a Python program.
 NULLS          := $(if $(shell command -v python3),$(BUILD)/nulls)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c examples/tasks/*.c))
 

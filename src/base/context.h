@@ -79,12 +79,12 @@ vplResult vplFail(const vplContext* context, vplResult result, const char* forma
         }                                                                                                    \
     } while (0)
 
-// The same at the beginning of a public function, which computes with PLAIN_FLOATS.
+// CHECK_POINTERS at the beginning of a public function, which then computes with PLAIN_FLOATS.
 #define REQUIRE(context, ...)                                                                                \
     PLAIN_FLOATS;                                                                                            \
     CHECK_POINTERS(context, __VA_ARGS__)
 
-// The same for an array, which may be NULL if it has no elements. Negative counts are left to others.
+// CHECK_POINTERS for an array, which may be NULL if it has no elements. Negative counts are left to others.
 #define REQUIRE_ARRAY(context, array, count)                                                                 \
     do {                                                                                                     \
         if ((count) > 0) {                                                                                   \

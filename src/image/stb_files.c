@@ -11,92 +11,61 @@
 
 #include <limits.h>
 #include <setjmp.h>
-#include <stddef.h>
 #include <string.h>
 
 // ---- memory for stb
-// Where memory runs out, stb asserts, frees blocks twice or takes the file for damaged. So its blocks come from the context's allocator, a list
-// holds them, and where one is refused longjmp leaves the call of stb and the list is freed.
-
-typedef struct Block {
-    _Alignas(max_align_t) struct Block* previous;
-    struct Block* next;
-    size_t size; // with this header
-} Block;
+// Where memory runs out, stb asserts, frees blocks twice or takes the file for damaged. So its blocks are in an arena, and where one is
+// refused, longjmp ends the call of stb; what it leaves is freed with the arena.
 
 typedef struct StbCall {
-    vplContext* context;
-    Block list; // its end
+    vplArena* arena;
     jmp_buf outOfMemory;
 } StbCall;
 
 static _Thread_local StbCall* stbCall; // of this thread
 
-static void* resizeBlock(void* memory, size_t size)
+static void* allocateStb(size_t size)
 {
-    StbCall* call = stbCall;
-    const vplContextDef* def = &call->context->def;
-    Block* old = memory != NULL ? (Block*)memory - 1 : NULL;
-    const size_t total = size + sizeof(Block);
-    Block* block = total > size ? def->alloc(def->allocUser, old, old != NULL ? old->size : 0, total) : NULL;
-    if (block == NULL) {
-        longjmp(call->outOfMemory, 1);
+    void* memory = vplArena_Alloc(stbCall->arena, 1, size);
+    if (memory == NULL) {
+        longjmp(stbCall->outOfMemory, 1);
     }
-    if (old == NULL) {
-        block->previous = &call->list;
-        block->next = call->list.next;
-    }
-    block->size = total;
-    block->previous->next = block->next->previous = block;
-    return block + 1;
-}
-
-static void* unlinkBlock(Block* block)
-{
-    block->previous->next = block->next;
-    block->next->previous = block->previous;
-    return block + 1;
-}
-
-static void freeBlock(vplContext* context, void* memory)
-{
-    if (memory != NULL) {
-        Block* block = (Block*)memory - 1;
-        context->def.alloc(context->def.allocUser, block, block->size, 0);
-    }
+    return memory;
 }
 
 static void freeStb(void* memory)
 {
-    if (memory != NULL) {
-        freeBlock(stbCall->context, unlinkBlock((Block*)memory - 1));
-    }
+    vplArena_Free(stbCall->arena, memory);
 }
 
-// Runs work(data), which calls stb. It must free the blocks of stb that it does not unlink.
-static vplResult callStb(vplContext* context, void (*work)(void*), void* data, const char* doing)
+static void* resizeStb(void* old, size_t oldSize, size_t size)
 {
-    StbCall call = {.context = context};
-    call.list.previous = call.list.next = &call.list;
-    stbCall = &call;
-    if (setjmp(call.outOfMemory) == 0) {
-        work(data);
-        stbCall = NULL;
-        return VPL_SUCCESS;
+    void* memory = allocateStb(size);
+    if (old != NULL) {
+        memcpy(memory, old, oldSize < size ? oldSize : size);
+        freeStb(old);
     }
-    while (call.list.next != &call.list) {
-        freeBlock(context, unlinkBlock(call.list.next));
+    return memory;
+}
+
+// Runs work(data), which calls stb.
+static vplResult callStb(vplArena* arena, void (*work)(void*), void* data)
+{
+    StbCall call = {.arena = arena};
+    stbCall = &call;
+    if (vplArena_Check(arena) == VPL_SUCCESS && setjmp(call.outOfMemory) == 0) {
+        work(data);
     }
     stbCall = NULL;
-    return vplFail(context, VPL_OUT_OF_MEMORY, "out of memory while %s", doing);
+    return vplArena_Check(arena);
 }
 
-#define STBIW_MALLOC(size)          resizeBlock(NULL, size)
-#define STBIW_REALLOC(memory, size) resizeBlock(memory, size)
-#define STBIW_FREE(memory)          freeStb(memory)
-#define STBI_MALLOC(size)           resizeBlock(NULL, size)
-#define STBI_REALLOC(memory, size)  resizeBlock(memory, size)
-#define STBI_FREE(memory)           freeStb(memory)
+#define STBIW_MALLOC(size)                      allocateStb(size)
+#define STBIW_REALLOC_SIZED(old, oldSize, size) resizeStb(old, oldSize, size)
+#define STBIW_FREE(memory)                      freeStb(memory)
+#define STBI_MALLOC(size)                       allocateStb(size)
+#define STBI_REALLOC_SIZED(old, oldSize, size)  resizeStb(old, oldSize, size)
+#define STBI_FREE(memory)                       freeStb(memory)
 
 #pragma GCC diagnostic ignored "-Wunused-function" // most of stb's
 #ifndef __clang__
@@ -145,6 +114,15 @@ static void encodeHdr(void* data)
     stbi_write_hdr_to_func(append, e->buffer, e->image->width, e->image->height, 3, e->image->pixels);
 }
 
+static vplResult encode(void (*work)(void*), const vplImage* image, const uint8_t* codes,
+                        vplByteBuffer* buffer)
+{
+    vplArena* arena = vplArena_Create(image->context);
+    const vplResult result = callStb(arena, work, &(Encoding){image, codes, buffer});
+    vplArena_Destroy(arena);
+    return result;
+}
+
 vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
 {
     if ((size_t)image->width * (size_t)image->height > INT_MAX / 6) { // stb counts bytes in int
@@ -153,8 +131,7 @@ vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vp
     }
     uint8_t* codes;
     TRY(vplMakeCodes(image, options, &codes));
-    const vplResult result =
-        callStb(image->context, encodePng, &(Encoding){image, codes, buffer}, "encoding a PNG");
+    const vplResult result = encode(encodePng, image, codes, buffer);
     vplFree(image->context, codes);
     return result;
 }
@@ -162,7 +139,7 @@ vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vp
 vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
 {
     (void)options;
-    return callStb(image->context, encodeHdr, &(Encoding){image, NULL, buffer}, "encoding an HDR picture");
+    return encode(encodeHdr, image, NULL, buffer);
 }
 
 // ---- reading
@@ -180,11 +157,7 @@ static void decode(void* data)
     int found = 0;
     t->codes = stbi_load_from_memory(d->bytes, d->size, &t->width, &t->height, &found, d->channels);
     t->channels = d->channels != 0 ? d->channels : found;
-    if (t->codes != NULL) {
-        unlinkBlock((Block*)t->codes - 1); // stays when the call has ended
-        return;
-    }
-    const char* reason = stbi_failure_reason();
+    const char* reason = t->codes == NULL ? stbi_failure_reason() : NULL;
     t->reason = reason != NULL && *reason != 0 ? reason : t->reason;
 }
 
@@ -194,14 +167,20 @@ static vplResult decodeCodes(vplContext* context, const uint8_t* bytes, size_t s
 {
     // A BMP's height is negative where rows go down; stb takes its absolute value, which -2^31 has not.
     static const uint8_t least[4] = {0, 0, 0, 0x80};
-    *out = (vplTexels){.context = context, .reason = "its data is damaged"};
+    *out = (vplTexels){.reason = "its data is damaged"};
     if (size >= 26 && memcmp(bytes, "BM", 2) == 0 && bytes[14] != 12 && memcmp(bytes + 22, least, 4) == 0) {
         out->reason = "its height is -2147483648";
         return VPL_SUCCESS;
     }
-    return size > INT_MAX
-               ? VPL_SUCCESS
-               : callStb(context, decode, &(Decoding){bytes, (int)size, channels, out}, "reading a picture");
+    if (size > INT_MAX) {
+        return VPL_SUCCESS;
+    }
+    out->arena = vplArena_Create(context);
+    const vplResult result = callStb(out->arena, decode, &(Decoding){bytes, (int)size, channels, out});
+    if (result != VPL_SUCCESS || out->codes == NULL) {
+        vplTexels_Free(out);
+    }
+    return result;
 }
 
 vplResult vplTexels_Decode(vplContext* context, const uint8_t* bytes, size_t size, vplTexels* texelsOut)
@@ -217,7 +196,8 @@ vplResult vplTexels_Decode(vplContext* context, const uint8_t* bytes, size_t siz
 
 void vplTexels_Free(vplTexels* texels)
 {
-    freeBlock(texels->context, texels->codes);
+    vplArena_Destroy(texels->arena);
+    texels->arena = NULL;
     texels->codes = NULL;
 }
 

@@ -3,10 +3,10 @@
 #ifndef VPL_IMAGE_TEXELS_H
 #define VPL_IMAGE_TEXELS_H
 
-#include "base/context.h"
+#include "base/arena.h"
 
 typedef struct vplTexels {
-    vplContext* context;
+    vplArena* arena; // holds the codes
     int width, height, channels;
     uint8_t* codes;     // NULL: the picture cannot be read
     const char* reason; // why not

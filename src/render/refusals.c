@@ -92,14 +92,14 @@ void vplRefuseOptions(vplPlan* p)
                               : refuseLighting(p);
     problem = problem != NULL ? problem : refuseOptions(p);
     if (problem != NULL) {
-        vplFormat(p->problem, sizeof p->problem, "%s", problem);
+        snprintf(p->problem, sizeof p->problem, "%s", problem);
         return;
     }
     for (int i = 0; i < p->emitterCount && p->shading == VPL_LIGHTING_DOCUMENTED && p->showsDirect; i++) {
         if (p->emitters[i].type != VPL_EMITTER_POINT) {
-            vplFormat(p->problem, sizeof p->problem,
-                      "light %d is not a point light, and documented lighting knows no others; use physical",
-                      i);
+            snprintf(p->problem, sizeof p->problem,
+                     "light %d is not a point light, and documented lighting knows no others; use physical",
+                     i);
             return;
         }
     }

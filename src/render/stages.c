@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The table of stages, and when a picture needs each.
-#include "reference/light_path.h"
 #include "base/numbers.h"
+#include "reference/light_path.h"
 #include "render/options.h"
 #include "render/plan.h"
 #include "render/show.h"

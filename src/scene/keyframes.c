@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Cameras and emitters that move, by linear interpolation between keyframes. The formula a + t (b - a)
 // reproduces the keys, and values that both keys share, exactly.
-#include "math/vec.h"
 #include "base/numbers.h"
+#include "math/vec.h"
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -179,7 +179,7 @@ static vplResult checkKeys(const vplScene* scene, const vplKeys* k, const void* 
     double before = -INFINITY;
     for (int i = 0; i < k->count; i++) {
         char subject[64];
-        vplFormat(subject, sizeof subject, "%s %d: ", k->type, i);
+        snprintf(subject, sizeof subject, "%s %d: ", k->type, i);
         const double frame = frameOf(k->keys, k->size, i);
         TRY(vplScene_ReportFault(scene, subject, vplCheckKeyFrame(before, frame)));
         TRY(vplScene_ReportFault(scene, subject, k->check(def, (const char*)k->keys + (size_t)i * k->size)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Objects that move: transforms at keyframes, and in between their matrices interpolated linearly. Rendering does not change
 // a scene, and geometry is made of what stands in it, so moving to a frame is an edit of the scene, not part of a render.
+#include "base/numbers.h"
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -82,7 +83,7 @@ vplResult vplScene_SetFrame(vplScene* scene, double frame)
     for (int i = 0; i < scene->moverCount; i++) { // a failure changes nothing
         const vplMat4 pose = poseAt(&scene->movers[i], frame);
         char subject[64];
-        snprintf(subject, sizeof subject, "object %d at frame %g: ", scene->movers[i].object, frame);
+        vplFormat(subject, sizeof subject, "object %d at frame %g: ", scene->movers[i].object, frame);
         TRY(vplScene_ReportFault(scene, subject, vplCheckTransform(&pose)));
     }
     for (int i = 0; i < scene->moverCount; i++) {

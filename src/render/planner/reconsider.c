@@ -2,6 +2,7 @@
 // Second thoughts: the noise and the bias of the picture so far say what more passes, a finer plan and path tracing would
 // cost. Costs are counted in rays and not in seconds, so that the same plan is chosen on every machine.
 #include "base/clock.h"
+#include "base/numbers.h"
 #include "render/planner/patch_plan.h"
 #include "render/planner/ways.h"
 
@@ -196,9 +197,9 @@ vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut, bool* moreO
         return reach(r, &s, asked, doneOut, moreOut);
     }
     if (s.bias > asked * asked && s.noise < 0.1 * s.bias) {
-        snprintf(r->ended, sizeof r->ended,
-                 "edges, blur and light that is left out are %.3g %% of it, which more passes do not mend",
-                 100 * sqrt(s.bias));
+        vplFormat(r->ended, sizeof r->ended,
+                  "edges, blur and light that is left out are %.3g %% of it, which more passes do not mend",
+                  100 * sqrt(s.bias));
         *doneOut = true;
     }
     return VPL_SUCCESS;
