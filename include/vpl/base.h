@@ -4,9 +4,9 @@
 // In all headers a pointer must not be NULL unless its function or field says that it may be; progress, user and data always
 // may. Functions with a vplResult check their own arguments: NULL is VPL_INVALID_ARGUMENT, and the message names it. Others
 // return 0, false, NULL or a struct of zeros for it, except those that loops call, whose comments say that pointers must not
-// be NULL. tests/nulls calls every function with every wrong argument. Numbers in texts and files have decimal points, whatever
-// locale the program has set. Functions with a vplResult, and tasks, round to the nearest, keep denormals and mask floating-point
-// traps, whatever the program has set, and restore its environment; the other functions compute in the caller's.
+// be NULL. tests/nulls calls every function with every wrong argument. Numbers in texts and files have decimal points
+// in every locale. Functions with a vplResult, and tasks, compute in the default floating-point environment (rounding to nearest,
+// denormals kept, no traps) and restore the program's; other functions compute in the program's.
 #ifndef VPL_BASE_H
 #define VPL_BASE_H
 
@@ -118,8 +118,8 @@ typedef struct vplContextDef {
 vplContextDef vplDefaultContextDef(void);
 
 // Owns memory, messages and threads. Other objects are created from a context and must be destroyed before
-// it. Only one thread at a time may use a context; contexts are independent of each other. A thread that calls the library
-// needs a stack of 256 KiB, and so do those of parallelFor.
+// it. Only one thread at a time may use a context; contexts are independent of each other. A thread that calls the library,
+// or runs tasks for parallelFor, needs a stack of 256 KiB.
 typedef struct vplContext vplContext;
 
 // Creates a context. `def` NULL means all defaults. VPL_INVALID_ARGUMENT for a def out of range,

@@ -1,19 +1,49 @@
 // SPDX-License-Identifier: MIT
 #include "base/floats.h"
 
+#if defined(__SSE__) || defined(__aarch64__)
+
 #if defined(__SSE__)
 
 #include <xmmintrin.h>
 
-// Sources: "MXCSR Control and Status Register" in Intel's Software Developer's Manual, volume 1, section 10.2.3.
+// Source: "MXCSR Control and Status Register" in Intel's Software Developer's Manual, volume 1, section 10.2.3.
 enum { PLAIN = 0x1F80, FLAGS = 0x3F };
+
+static uint64_t readControl(void)
+{
+    return _mm_getcsr();
+}
+
+static void writeControl(uint64_t control)
+{
+    _mm_setcsr((unsigned)control);
+}
+
+#else
+
+enum { PLAIN = 0, FLAGS = 0 }; // flags are in another register
+
+static uint64_t readControl(void)
+{
+    uint64_t control;
+    __asm__ volatile("mrs %0, fpcr" : "=r"(control));
+    return control;
+}
+
+static void writeControl(uint64_t control)
+{
+    __asm__ volatile("msr fpcr, %0" : : "r"(control));
+}
+
+#endif
 
 vplFloats vplFloats_Set(void)
 {
-    const unsigned control = _mm_getcsr();
-    const bool changed = (control & ~(unsigned)FLAGS) != PLAIN;
+    const uint64_t control = readControl();
+    const bool changed = (control & ~(uint64_t)FLAGS) != PLAIN;
     if (changed) {
-        _mm_setcsr(PLAIN);
+        writeControl(PLAIN);
     }
     return (vplFloats){control, changed};
 }
@@ -21,27 +51,7 @@ vplFloats vplFloats_Set(void)
 void vplFloats_Restore(const vplFloats* before)
 {
     if (before->changed) {
-        _mm_setcsr((unsigned)before->control);
-    }
-}
-
-#elif defined(__aarch64__)
-
-vplFloats vplFloats_Set(void)
-{
-    vplFloats before;
-    __asm__ volatile("mrs %0, fpcr" : "=r"(before.control));
-    before.changed = before.control != 0;
-    if (before.changed) {
-        __asm__ volatile("msr fpcr, %0" : : "r"((uint64_t)0));
-    }
-    return before;
-}
-
-void vplFloats_Restore(const vplFloats* before)
-{
-    if (before->changed) {
-        __asm__ volatile("msr fpcr, %0" : : "r"(before->control));
+        writeControl(before->control);
     }
 }
 
@@ -49,7 +59,7 @@ void vplFloats_Restore(const vplFloats* before)
 
 vplFloats vplFloats_Set(void)
 {
-    vplFloats before = {.changed = true};
+    vplFloats before;
     fegetenv(&before.environment);
     fesetenv(FE_DFL_ENV);
     return before;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The floating-point environment: rounding, denormals and traps. Programs change it: those with Embree flush denormals to zero, some trap
-// divisions by zero. Bits must not depend on it, and 1/0 is no mistake here.
+// The floating-point environment: the rounding mode, whether denormals are flushed to zero, and which exceptions trap. Programs change it:
+// those with Embree flush denormals, and some trap on a division by zero. The library's bits must not depend on it, and it divides by zero on
+// purpose.
 #ifndef VPL_BASE_FLOATS_H
 #define VPL_BASE_FLOATS_H
 
@@ -13,18 +14,18 @@
 
 typedef struct vplFloats {
 #if defined(__SSE__) || defined(__aarch64__)
-    uint64_t control; // MXCSR or FPCR
+    uint64_t control; // the register MXCSR, or FPCR
+    bool changed;     // it was not the default
 #else
     fenv_t environment;
 #endif
-    bool changed;
 } vplFloats;
 
-// Rounds to the nearest, keeps denormals and masks traps in this thread. Returns what was before.
+// Sets the default environment in this thread: rounding to nearest, denormals kept, no traps. Returns the environment before.
 vplFloats vplFloats_Set(void);
 void vplFloats_Restore(const vplFloats* before);
 
-// Does so until the enclosing block ends.
+// Sets the default environment until the enclosing block ends.
 #define PLAIN_FLOATS                                                                                         \
     const vplFloats floatsBefore __attribute__((cleanup(vplFloats_Restore))) = vplFloats_Set()
 

@@ -14,7 +14,7 @@ typedef struct Tasks {
     void* data;
 } Tasks;
 
-// Threads have a floating-point environment each.
+// Runs a task in the default floating-point environment: each thread has an environment of its own.
 static void plainTask(void* data, int index, int worker)
 {
     PLAIN_FLOATS;

@@ -118,7 +118,7 @@ void setSpeaker(const char* name);
 // Prints messages of the library as --quiet and -v ask for. Takes the Arguments.
 vplLogFcn logToStderr;
 
-// Makes a context that logs to stderr, as it does its own failure; NULL then.
+// Makes a context that logs to stderr. On failure logs why, and *contextOut is NULL.
 vplResult openContext(const Arguments* arguments, vplContext** contextOut);
 
 // Plans a render as renderPicture does it: it can be interrupted.
@@ -174,8 +174,8 @@ vplProgressFcn askInterrupts;
 json_t* numberJson(double value);
 json_t* integersJson(const int* values, int count);
 
-// Ends the program where jansson lacks memory: jansson itself asserts, takes text for wrong or leaves values out. Nobody reads or makes JSON
-// while a file is being written.
+// From now on the program ends with a sentence when jansson runs out of memory. jansson itself may fail an assertion, report a syntax error
+// or leave values out. No file is left half-written, because JSON is neither read nor made while a file is being written.
 void guardJson(void);
 
 // Writes JSON to a file, or to stdout if the path is NULL, and frees it. Complains unless it returns

@@ -32,8 +32,8 @@ typedef struct vplExrStream {
 // The set-up of an OpenEXRCore context that uses the stream, to write if the stream has a buffer, else to read.
 exr_context_initializer_t vplDescribeExrStream(vplExrStream* stream);
 
-// Whether memory ran out in calls of OpenEXRCore of which the last returned `result`, if errno was 0 before them. zlib without memory is reported
-// as corrupt data, but malloc sets errno.
+// Returns true if OpenEXRCore ran out of memory. The caller sets errno to 0 before its calls of OpenEXRCore; `result` is that of the last one.
+// OpenEXRCore reports corrupt data where zlib ran out of memory, and then only the errno of malloc tells.
 bool vplExrLacksMemory(exr_result_t result);
 
 // Finds the place of a channel of the layer `name` in our pixels: 0 for red to 2 for blue, or -1. Grey and single channels are stored in red

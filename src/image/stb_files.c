@@ -14,8 +14,8 @@
 #include <string.h>
 
 // ---- memory for stb
-// Where memory runs out, stb asserts, frees blocks twice or takes the file for damaged. So its blocks are in an arena, and where one is
-// refused, longjmp ends the call of stb; what it leaves is freed with the arena.
+// When memory runs out, stb fails an assertion, frees a block twice or reports a damaged file. So its blocks are in an arena, and when an
+// allocation fails, longjmp leaves stb. The blocks that stb still holds are freed with the arena.
 
 typedef struct StbCall {
     vplArena* arena;

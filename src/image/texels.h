@@ -12,8 +12,8 @@ typedef struct vplTexels {
     const char* reason; // why not
 } vplTexels;
 
-// Decodes PNG, JPEG, BMP or TGA. The size is checked before anything is decoded. vplTexels_Free frees what it gives. A picture that
-// cannot be read is no failure: only memory that runs out is.
+// Decodes PNG, JPEG, BMP or TGA. The size is checked before anything is decoded. vplTexels_Free frees the codes. A picture that
+// cannot be read is VPL_SUCCESS without codes; running out of memory is VPL_OUT_OF_MEMORY.
 vplResult vplTexels_Decode(vplContext* context, const uint8_t* bytes, size_t size, vplTexels* texelsOut);
 void vplTexels_Free(vplTexels* texels);
 

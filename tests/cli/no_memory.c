@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A library for LD_PRELOAD that lets an allocation of the whole program fail, those of libraries included: the one of number VPL_FAIL_AT, and
-// with VPL_FAIL_ON all after it. It then makes the file VPL_FAILED.
+// A library for LD_PRELOAD that makes one allocation of a program and its libraries fail: number VPL_FAIL_AT, from 0 on. With VPL_FAIL_ON all
+// later ones fail, too. The file VPL_FAILED is created when an allocation fails.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
